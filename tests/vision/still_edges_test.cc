@@ -114,6 +114,54 @@ TEST(StillEdges, ALineTellsPlaceBetterThanThreePixels) {
   EXPECT_GT(rms(FindStillEdges(still, {}, kBlur, kLeast_dn)), 0.1);
 }
 
+// As a renderer or a scaled video draws it: each pixel has its share of both
+// sides, and is blurred after that. Three pixels' curvature then changes with
+// the edge's place between two pixels.
+std::vector<float> DrawSampledEdge(const std::function<double(double)>& edge) {
+  const double s = std::sqrt(kBlur * kBlur - 1.0 / 12.0);
+  constexpr std::int32_t kReach = 6;
+  std::vector<float> levels;
+  for (std::int32_t y = 0; y < kHeight; ++y) {
+    for (std::int32_t x = 0; x < kWidth; ++x) {
+      double sum = 0.0;
+      double share = 0.0;
+      for (std::int32_t i = -kReach; i <= kReach; ++i) {
+        const double weight = std::exp(-0.5 * i * i / (s * s));
+        sum += weight;
+        share += weight * std::clamp(0.5 + edge(x) - (y + i), 0.0, 1.0);
+      }
+      levels.push_back(static_cast<float>(50.0 + kContrast * share / sum));
+    }
+  }
+  return levels;
+}
+
+TEST(StillEdges, ContrastIsThatOfAllPlacesBetweenTwoPixels) {
+  const std::vector<float> levels = DrawSampledEdge(Straight);
+  const StillPicture still{levels.data(), {}, kWidth, kHeight};
+  const auto lines = FindStillLines(still, kBlur, kLeast_dn);
+  ASSERT_EQ(lines.size(), 1U);
+  const auto edges = FindStillEdges(still, lines, kBlur, kLeast_dn);
+  for (std::int32_t x = 10; x < kWidth - 10; ++x) {
+    const auto y = static_cast<std::int32_t>(std::lround(Straight(x)));
+    EXPECT_NEAR(edges[static_cast<std::size_t>(y * kWidth + x)].contrast,
+                kContrast, 0.02 * kContrast)
+        << x;
+  }
+}
+
+TEST(StillEdges, ALevelEdgeBetweenTwoPixelsIsInItsPlace) {
+  for (const double between : {0.1, 0.25, 0.4, 0.6, 0.75, 0.9}) {
+    const double y = 21.0 + between;
+    const std::vector<float> levels =
+        DrawSampledEdge([y](double) { return y; });
+    const auto lines =
+        FindStillLines({levels.data(), {}, kWidth, kHeight}, kBlur, kLeast_dn);
+    ASSERT_EQ(lines.size(), 1U) << between;
+    EXPECT_NEAR(lines[0].At(120.0), y, 0.02) << between;
+  }
+}
+
 // As a lens bends it, by 2 px over the picture.
 TEST(StillEdges, ABentEdgeIsSeveralLines) {
   const auto bent = [](double x) {

@@ -1,8 +1,10 @@
 #include "layers/still_edges.h"
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <numbers>
 #include <optional>
 
 namespace touchdown::vision::layers {
@@ -57,25 +59,71 @@ std::vector<StillEdge> SeenByPixels(const StillPicture& still, double blur,
   return seen;
 }
 
+// Blurs from an edge, as far as a body's edge has any (kFar in shape_cover.cc).
+constexpr double kFarthest = 3.5;
+
+// Where the edge near v crosses the line u: one step of Gauss and Newton from v
+// on, of  levels = a + contrast Phi((v' - v) / blur).  Three pixels tell it,
+// too, but by their curvature: in a picture that was blurred after it was
+// sampled, as a scaled video's, that makes a tenth of the contrast depend on
+// where between two pixels the edge lies. Nothing where too few pixels are
+// known, or where no edge is near. `blur`: along v.
+std::optional<Crossing> FitCrossing(const StillPicture& still, const Axes& axes,
+                                    double blur, std::int32_t u, double v) {
+  // px to both sides: fewer do not tell three numbers.
+  constexpr double kLeast_px = 3.0;
+  // px of a step: farther off the edge that was meant is another.
+  constexpr double kMost_px = 1.0;
+  // Frames that saw a pixel without the body: below it is not known.
+  constexpr float kSeen = 1.5F;
+  const double reach = std::max(kLeast_px, kFarthest * blur);
+  const auto first = static_cast<std::int32_t>(std::ceil(v - reach));
+  const auto last = static_cast<std::int32_t>(std::floor(v + reach));
+  Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d right = Eigen::Vector3d::Zero();
+  for (std::int32_t at = std::max(first, 0);
+       at <= std::min(last, axes.depth - 1); ++at) {
+    const std::size_t pixel = axes.PixelAt(u, at);
+    if (!still.clear.empty() && still.clear[pixel] < kSeen) continue;
+    const double z = (at - v) / blur;
+    const Eigen::Vector3d by(1.0,
+                             0.5 * std::erfc(-z * std::numbers::sqrt2 / 2.0),
+                             std::exp(-0.5 * z * z) * std::numbers::inv_sqrtpi /
+                                 std::numbers::sqrt2);
+    normal += by * by.transpose();
+    right += by * static_cast<double>(still.levels[pixel]);
+  }
+  // Of the pixels' weight that a number has after the others.
+  const Eigen::LDLT<Eigen::Matrix3d> factors(normal);
+  constexpr double kKnown = 1e-2;
+  if (!(factors.vectorD().minCoeff() > kKnown)) return std::nullopt;
+  const Eigen::Vector3d x = factors.solve(right);
+  const double step = -x(2) / x(1) * blur;
+  if (!(std::abs(step) < kMost_px)) return std::nullopt;
+  return Crossing{u, v + step, x(1)};
+}
+
 // The edge that lies within a pixel, if one does that is about along u.
 std::optional<Crossing> CrossingIn(const StillPicture& still, const Axes& axes,
                                    const std::vector<StillEdge>& seen,
                                    double blur, std::int32_t u,
                                    std::int32_t v) {
-  // Frames that saw a pixel without the body: below it is not known.
-  constexpr float kSeen = 1.5F;
+  constexpr double kNear_px = 1.0;    // as far as three pixels may be off
   constexpr double kWithin_px = 0.5;  // half a pixel
-  const std::size_t pixel = axes.PixelAt(u, v);
-  const StillEdge& edge = seen[pixel];
+  const StillEdge& edge = seen[axes.PixelAt(u, v)];
   if (edge.contrast == 0.0F) return std::nullopt;
   const float across = axes.along_rows ? edge.normal_y : edge.normal_x;
   const float beside = axes.along_rows ? edge.normal_x : edge.normal_y;
   if (std::abs(across) < std::abs(beside)) return std::nullopt;
-  if (!still.clear.empty() && still.clear[pixel] < kSeen) return std::nullopt;
   const double rises = across > 0.0F ? 1.0 : -1.0;
   const double off = rises * static_cast<double>(edge.z) * blur;
-  if (std::abs(off) > kWithin_px) return std::nullopt;
-  return Crossing{u, v - off, rises * static_cast<double>(edge.contrast)};
+  if (std::abs(off) > kNear_px) return std::nullopt;
+  const auto crossing = FitCrossing(still, axes, blur, u, v - off);
+  if (!crossing || crossing->contrast * rises <= 0.0 ||
+      std::abs(crossing->v - v) > kWithin_px) {
+    return std::nullopt;
+  }
+  return crossing;
 }
 
 // Links the crossings of neighbouring u to chains.
@@ -243,10 +291,9 @@ class LineDrawer {
   LineDrawer(const StillPicture& still, const std::vector<StillEdge>& seen,
              double blur)
       : still_(still),
-        seen_(seen),
         blur_(blur),
         edges_(seen),
-        distance_(seen.size(), kFarthest) {}
+        distance_(seen.size(), static_cast<float>(kFarthest)) {}
 
   void Draw(const StillLine& line) {
     const Axes axes(still_, line.along_rows);
@@ -268,24 +315,15 @@ class LineDrawer {
   std::vector<StillEdge> Take() { return std::move(edges_); }
 
  private:
-  // Blurs from an edge, as far as a body's edge has any (kFar in
-  // shape_cover.cc).
-  static constexpr float kFarthest = 3.5F;
-
   std::vector<Crossing> CrossingsOn(const StillLine& line, const Axes& axes,
                                     std::int32_t begin,
                                     std::int32_t end) const {
+    const double blur = blur_ * std::hypot(1.0, line.slope);
     std::vector<Crossing> on;
     for (std::int32_t u = begin; u <= end; ++u) {
-      const auto middle = static_cast<std::int32_t>(std::lround(line.At(u)));
-      // The edge of a single pixel may lie in the one beside.
-      for (const std::int32_t v : {middle, middle - 1, middle + 1}) {
-        if (v < 1 || v > axes.depth - 2) continue;
-        const auto crossing = CrossingIn(still_, axes, seen_, blur_, u, v);
-        if (!crossing || (crossing->contrast > 0.0) != line.rises) continue;
-        on.push_back(*crossing);
-        break;
-      }
+      const auto crossing = FitCrossing(still_, axes, blur, u, line.At(u));
+      if (!crossing || (crossing->contrast > 0.0) != line.rises) continue;
+      on.push_back(*crossing);
     }
     return on;
   }
@@ -313,7 +351,7 @@ class LineDrawer {
               double contrast) {
     const double v_edge = line.At(u);
     const double cosine = 1.0 / std::hypot(1.0, line.slope);
-    const double reach = static_cast<double>(kFarthest) * blur_ / cosine;
+    const double reach = kFarthest * blur_ / cosine;
     const auto top =
         std::max(1, static_cast<std::int32_t>(std::ceil(v_edge - reach)));
     const auto bottom = std::min(
@@ -336,7 +374,6 @@ class LineDrawer {
   }
 
   const StillPicture& still_;
-  const std::vector<StillEdge>& seen_;
   double blur_;
   std::vector<StillEdge> edges_;
   std::vector<float> distance_;  // to the line that was drawn, in blurs
