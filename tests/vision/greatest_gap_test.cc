@@ -226,6 +226,44 @@ TEST(GreatestGap, OfAFrameExposedAcrossABlowIsKnownLess) {
   EXPECT_NEAR(found.value, Chatter::kCusp_px, 2.0 * found.u);
 }
 
+// A ball that falls until frame 9.98 and then lies there: of frame 10 a shutter
+// that is open for 0.8 frames shows the fall for 0.38 of them.
+TEST(GreatestGap, OfAFrameExposedAcrossTheTouchdownIsNoApproach) {
+  constexpr double kTouchdown = 9.98;
+  constexpr double kExposure = 0.8;
+  constexpr double kSpeed_px = 2.0;  // a frame
+  constexpr int kSteps = 400;
+  std::vector<double> gaps;
+  for (int i = 0; i < 20; ++i) {
+    double sum = 0.0;
+    for (int k = 0; k < kSteps; ++k) {
+      const double t = i - kTouchdown + kExposure * ((k + 0.5) / kSteps - 0.5);
+      sum += t < 0.0 ? Fall(-1e3 * kSpeed_px, 1e-3 * t) : 0.0;
+    }
+    gaps.push_back(sum / kSteps);
+  }
+  ASSERT_GT(gaps[10], 0.15);
+  PlaneTrack track = Gaps(gaps, 0.01);
+  track.exposure = kExposure;
+  Event event;
+  event.before_frames = {0, 9};
+  event.before =
+      FitFlight(SelectSamples(track, event.before_frames), KnownGravity());
+  event.time_s = {kTouchdown * 1e-3, 1e-6};
+  const auto find = [&] {
+    return FindGreatestGap(track,
+                           {{{{0, 10}, StretchKind::kFlight, 0.0, 0},
+                             {{10, 20}, StretchKind::kSupported, 0.0, 0}}},
+                           10, {}, KnownGravity(), &event)
+        ->gap_px;
+  };
+  EXPECT_NEAR(find().value, 0.0, 0.01);
+  EXPECT_LT(find().u, 0.02);
+  // An exposure that was not measured may be of any length.
+  track.exposure = 1.0;
+  EXPECT_NEAR(find().value, 0.0, 2.0 * find().u);
+}
+
 TEST(GreatestGap, NothingFilmedIsAbsent) {
   EXPECT_FALSE(Find(PlaneTrack{}, {}));
   const auto one =

@@ -280,6 +280,44 @@ void Finder::SearchStretch(const Stretch& stretch) {
   }
 }
 
+// A frame that was exposed across the touchdown shows the mean of two motions:
+// of a body that rests from then on, a part of the approach. With b, the part
+// of the exposure e before it, and the approach's rate r, all in frames,
+//   shift = r b^2 / (2 e).
+// The samples since the contact are put down by it.
+PlaneTrack TakeOutApproach(const PlaneTrack& track, std::size_t from,
+                           const Event& event) {
+  // Of a frame interval: what a measured exposure is off by. More widens the
+  // gaps of frames at the touchdown; less believes shifts that are too great.
+  // Not studied.
+  constexpr double kExposureError = 0.1;
+  PlaneTrack out = track;
+  const double dt = track.frame_interval_s;
+  const double rate =
+      -GapOfFlight(track, *event.before, event.time_s.value).rate * dt;
+  const auto shift_of = [&](const PlaneSample& s, double exposure) {
+    const double before = std::clamp(
+        0.5 * exposure - (s.time_s - event.time_s.value) / dt, 0.0, exposure);
+    return std::max(rate, 0.0) * before * before / (2.0 * exposure);
+  };
+  for (std::size_t i = from; i < out.samples.size(); ++i) {
+    PlaneSample& s = out.samples[i];
+    if ((s.time_s - event.time_s.value) / dt > 0.5) break;
+    double shift = shift_of(s, track.exposure);
+    double u =
+        shift_of(s, std::min(1.0, track.exposure + kExposureError)) - shift;
+    if (track.exposure >= 1.0) {  // of any length
+      u = 0.5 * shift / std::numbers::sqrt3;
+      shift *= 0.5;
+    }
+    s.gap_px -= shift;
+    s.height_px -= shift;
+    s.u_gap_px = std::hypot(s.u_gap_px, u);
+    s.u_height_px = std::hypot(s.u_height_px, u);
+  }
+  return out;
+}
+
 }  // namespace
 
 std::optional<GreatestGap> FindGreatestGap(const PlaneTrack& track,
@@ -288,7 +326,9 @@ std::optional<GreatestGap> FindGreatestGap(const PlaneTrack& track,
                                            const GroundLevel& ground,
                                            const FlightOptions& options,
                                            const Event* event) {
-  Finder finder{track, from, ground, options, event};
+  const PlaneTrack at_rest =
+      event ? TakeOutApproach(track, from, *event) : track;
+  Finder finder{at_rest, from, ground, options, event};
   for (const Stretch& stretch : stretches) finder.SearchStretch(stretch);
   // Frames of no flight that follow the touchdown at once.
   if (event && (!event->after || event->after_frames.begin > from)) {
