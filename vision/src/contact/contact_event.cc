@@ -95,6 +95,26 @@ void LeaveOutStraddling(const PlaneTrack& track, const FlightOptions& options,
   if (after.size() > spare && near(after.begin)) ++after.begin;
 }
 
+// The last frame of a rebound that meets the ground again before the frame's
+// exposure ends, or may do so, is a mean of two motions. What follows the blow
+// is another motion by as much as the flight's own; a mean over the exposure e
+// is then off by at most  rate e / 8,  where the blow lies in its middle.
+void WidenAtNextImpact(const Event& event, PlaneTrack& track) {
+  const std::size_t last = event.after_frames.end - 1;
+  if (event.after_frames.end >= track.samples.size()) return;  // the film ends
+  PlaneSample& s = track.samples[last];
+  const double exposure_s = track.exposure * track.frame_interval_s;
+  const double ends_s = s.time_s + 0.5 * exposure_s;
+  if (GapOfFlight(track, *event.after, ends_s).gap_px > 0.0) return;
+  const FlightState at = event.after->At(s.time_s);
+  const auto widen = [&](double rate, double& u) {
+    u = std::hypot(u, rate * exposure_s / 8.0);
+  };
+  widen(at.v_t, s.u_along_px);
+  widen(GapOfFlight(track, *event.after, ends_s).rate, s.u_height_px);
+  widen(at.omega, s.u_face_rad);
+}
+
 // Whether a sample lies clearly off a flight in any of its coordinates.
 bool LeavesFlight(const PlaneSample& s, const Flight& flight) {
   // Standard deviations. Fewer: a frame of the flight after the impact passes
@@ -337,8 +357,9 @@ FlightGap GapOfFlight(const PlaneTrack& track, const Flight& flight,
   return g;
 }
 
-bool MeasureEvent(const PlaneTrack& track, const FlightOptions& options,
+bool MeasureEvent(const PlaneTrack& seen, const FlightOptions& options,
                   Event& event, std::string& reason) {
+  PlaneTrack track = seen;
   const PlaneSample& last = track.samples[event.before_frames.end - 1];
   reason = fmt::format(
       "too few frames show the body before its impact at frame {}", last.frame);
@@ -347,6 +368,7 @@ bool MeasureEvent(const PlaneTrack& track, const FlightOptions& options,
   bool flies = event.after_frames.size() >= MinFlightFrames(options);
   if (flies) {
     event.after = FitFlight(SelectSamples(track, event.after_frames), options);
+    WidenAtNextImpact(event, track);
   }
   // With no frame to spare only a rebound tells where and when the flight
   // ended. An impact one frame earlier looks alike, unless the last frame is
