@@ -93,8 +93,10 @@ std::optional<Crossing> FitCrossing(const StillPicture& still, const Axes& axes,
     normal += by * by.transpose();
     right += by * static_cast<double>(still.levels[pixel]);
   }
-  // Of the pixels' weight that a number has after the others.
   const Eigen::LDLT<Eigen::Matrix3d> factors(normal);
+  // Of a pixel's weight, what the last of the three numbers has after the
+  // others. Less: an edge at the end of what is known is told by noise. Not
+  // studied.
   constexpr double kKnown = 1e-2;
   if (!(factors.vectorD().minCoeff() > kKnown)) return std::nullopt;
   const Eigen::Vector3d x = factors.solve(right);
