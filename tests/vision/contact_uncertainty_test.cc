@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -52,6 +53,47 @@ TEST(ContactUncertainty, TimeIsWidenedByWhatTheImpactChanges) {
   EXPECT_NEAR(find_time_u(drifting),
               std::hypot(u, 0.5 * kOff_px / fall_px_per_s), 0.02 * u);
   EXPECT_GT(kOff_px / fall_px_per_s, 0.2 * u);  // the above tell them apart
+}
+
+// A block that glides in flat, less than a pixel above the ground: its outline
+// and the ground's edge are seen as one, off by more the nearer they are. What
+// touches the ground with a corner, or comes down steeply, hardly changes.
+TEST(ContactUncertainty, AGlideBesideTheGroundIsKnownLess) {
+  constexpr double kOff_px = 0.02;
+  constexpr double kBlur_px = 1.0;
+  Filming filming;
+  filming.camera.fps = 2000.0;
+  filming.frames = 60;
+  filming.u_px = 0.004;
+  filming.u_angle_rad = 1e-4;
+  filming.u_ground_rad = 5e-5;
+  const auto find = [&](const Throw& thrown, double blur_px) {
+    PlaneTrack track = FilmPlane(thrown, filming);
+    track.blur_px = blur_px;
+    for (PlaneSample& s : track.samples) {
+      const double off =
+          kOff_px * std::exp(-std::max(s.gap_px, 0.0) / kBlur_px);
+      s.gap_px -= off;
+      s.height_px -= off;
+    }
+    return *FindContacts(track, WithScale(filming))
+                .first.contact.approach_angle_rad;
+  };
+  Throw glide = Block(0.0);
+  glide.before = {1.6, -0.12, 0.0};
+  glide.after = {1.5, 0.0, 0.0};
+  glide.stays = true;
+  const core::Estimate angle = find(glide, kBlur_px);
+  EXPECT_NEAR(angle.value, glide.ContactAngle(), 2.0 * angle.u);
+  EXPECT_GT(angle.u, 1.3 * find(glide, 0.0).u);
+  EXPECT_GT(std::abs(angle.value - glide.ContactAngle()),
+            2.0 * find(glide, 0.0).u);
+  Throw steep = glide;
+  steep.before.vy = -4.0;
+  EXPECT_LT(find(steep, kBlur_px).u, 1.2 * find(steep, 0.0).u);
+  Throw corner = Block(20.0_deg);
+  Rebound(corner, 0.5);
+  EXPECT_LT(find(corner, kBlur_px).u, 1.05 * find(corner, 0.0).u);
 }
 
 // A scale that is wrong makes gravity wrong: flights that are clear in the

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
 
 #include "contact/greatest_gap.h"
 #include "contact/impacts.h"
@@ -76,6 +77,45 @@ double ReboundTangential(const JointVector& p) {
   return TangentialSpeed(p, kVx2, kVy2);
 }
 
+// Of the outline that tells the body's height, the part that lies within a blur
+// of the ground where the body touches it; 1: a face.
+double ShareBesideGround(const PlaneTrack& track, double face_rad) {
+  const double pi = std::numbers::pi;
+  const double blur = track.blur_px;
+  if (track.kind == core::BodyKind::kSphere) {
+    const double r = track.half_long_px;
+    return std::min(1.0, 2.0 * std::sqrt(2.0 * blur * r) / (pi * r));
+  }
+  const bool lies = std::abs(std::remainder(face_rad, pi)) < 0.25 * pi;
+  const double side = 2.0 * (lies ? track.half_long_px : track.half_short_px);
+  const double rises =
+      side * std::abs(std::sin(std::remainder(face_rad, 0.5 * pi)));
+  return rises > blur ? blur / rises : 1.0;
+}
+
+// Beside the ground's edge the model of an outline is off by something else
+// than in the air: a face by  kChange exp(-gap / blur),  whose slope of least
+// squares is one of the flight, px a frame.
+double LeanBesideGround(const PlaneTrack& track, const SampleRange& flight) {
+  // px. A camera's edge is not Gauss's, and its blur and the ground's contrast
+  // are known to a percent. Larger widens the approach of bodies that glide in
+  // along the ground; smaller believes some that are 0.05 deg off. 0.015: of 97
+  // clips of blocks that land flat 93 lie within 1.96 u with it, 90 without.
+  constexpr double kChange_px = 0.015;
+  if (!(track.blur_px > 0.0)) return 0.0;  // not known
+  const std::span<const PlaneSample> samples = SelectSamples(track, flight);
+  const double middle = 0.5 * static_cast<double>(samples.size() - 1);
+  double rise = 0.0;
+  double spread = 0.0;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const double at = static_cast<double>(i) - middle;
+    rise += at * std::exp(-std::max(samples[i].gap_px, 0.0) / track.blur_px);
+    spread += at * at;
+  }
+  return kChange_px * ShareBesideGround(track, samples.back().face_rad) *
+         std::abs(rise) / spread;
+}
+
 // Place of the lowest point along x', from the centre, at touchdown.
 double ContactArm(const PlaneTrack& track, const JointVector& p) {
   PlaneTrack sized;
@@ -141,7 +181,8 @@ void FillAngles(const RecordContext& context, const Event& event,
   const double picture =
       std::hypot(context.u_common_place_px * fit.p[kOmega],
                  CommonDrift(context.u_common_place_px, event.before_frames),
-                 BendAtEnd(context.bend_px, event.before_frames)) /
+                 std::hypot(BendAtEnd(context.bend_px, event.before_frames),
+                            LeanBesideGround(track, event.before_frames))) /
       paces;
   angle.u = std::hypot(angle.u, picture);
   contact.approach_angle_rad =
