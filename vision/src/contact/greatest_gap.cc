@@ -8,6 +8,10 @@
 namespace touchdown::vision {
 namespace {
 
+// Of a frame interval: what a measured exposure is off by. Less takes a mixture
+// of two motions for a pose; more loses frames and widens gaps. Not studied.
+constexpr double kExposureError = 0.1;
+
 struct Finder {
   const PlaneTrack& track;
   std::size_t since;  // first sample after the contact
@@ -188,12 +192,10 @@ void Finder::SearchInterval(const PlaneSample& a, const PlaneSample& b) {
 // pose is known best, at touchdown, goes through the frames of one flight, and
 // on to where that flight ends.
 void Finder::LookAfterTouchdown() {
-  // Nearer to an impact the exposure may span it. Frames, of the exposure's
-  // error: less takes a mixture of two motions for a pose; more loses frames.
-  // Not studied.
-  constexpr double kMargin = 0.1;
+  // Nearer to an impact the exposure may span it.
   const double dt = track.frame_interval_s;
-  const double spans_s = std::min(0.5, 0.5 * track.exposure + kMargin) * dt;
+  const double spans_s =
+      std::min(0.5, 0.5 * track.exposure + kExposureError) * dt;
   const FlightState at = event->before->At(event->time_s.value);
   PlaneSample touchdown;
   touchdown.time_s = event->time_s.value;
@@ -287,10 +289,6 @@ void Finder::SearchStretch(const Stretch& stretch) {
 // The samples since the contact are put down by it.
 PlaneTrack TakeOutApproach(const PlaneTrack& track, std::size_t from,
                            const Event& event) {
-  // Of a frame interval: what a measured exposure is off by. More widens the
-  // gaps of frames at the touchdown; less believes shifts that are too great.
-  // Not studied.
-  constexpr double kExposureError = 0.1;
   PlaneTrack out = track;
   const double dt = track.frame_interval_s;
   const double rate =
@@ -302,7 +300,10 @@ PlaneTrack TakeOutApproach(const PlaneTrack& track, std::size_t from,
   };
   for (std::size_t i = from; i < out.samples.size(); ++i) {
     PlaneSample& s = out.samples[i];
-    if ((s.time_s - event.time_s.value) / dt > 0.5) break;
+    if (s.time_s - event.time_s.value >
+        0.5 * (track.exposure + kExposureError) * dt) {
+      break;
+    }
     double shift = shift_of(s, track.exposure);
     double u =
         shift_of(s, std::min(1.0, track.exposure + kExposureError)) - shift;

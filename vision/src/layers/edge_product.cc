@@ -7,8 +7,6 @@
 namespace touchdown::vision::layers {
 namespace {
 
-double Phi(double z) { return 0.5 * std::erfc(-z * std::numbers::sqrt2 / 2.0); }
-
 // 1 / (2 pi), of the normal density of two variables.
 constexpr float kPerTwoPi = static_cast<float>(0.5 * std::numbers::inv_pi);
 // Parallel edges are taken as a little askew: quotients stay finite.
@@ -20,27 +18,36 @@ constexpr float kNearlyParallel = 0.998F;
 // second distance were the first and a little noise, w = sqrt(1 - rho^2), more:
 //   Phi(min) - phi w (phi(k) - k Phi(-k)),  k = |z1 - z2| / w.
 float NearlyParallel(double z1, double z2, double rho) {
-  const auto density = [](double z) {
-    return std::exp(-0.5 * z * z) * std::numbers::inv_sqrtpi /
-           std::numbers::sqrt2;
-  };
   const double w = std::sqrt(1.0 - rho * rho);
   const double k = std::abs(z1 - z2) / w;
-  const double blunt =
-      density(0.5 * (z1 + z2)) * w * (density(k) - k * Phi(-k));
-  return static_cast<float>(Phi(std::min(z1, z2)) - blunt - Phi(z1) * Phi(z2));
+  const double blunt = NormalDensity(0.5 * (z1 + z2)) * w *
+                       (NormalDensity(k) - k * NormalCdf(-k));
+  return static_cast<float>(NormalCdf(std::min(z1, z2)) - blunt -
+                            NormalCdf(z1) * NormalCdf(z2));
 }
 
 }  // namespace
+
+double NormalCdf(double z) {
+  return 0.5 * std::erfc(-z * std::numbers::sqrt2 / 2.0);
+}
+
+double NormalDensity(double z) {
+  return std::exp(-0.5 * z * z) * std::numbers::inv_sqrtpi /
+         std::numbers::sqrt2;
+}
 
 // The curvature over the step falls from 1 to -1 as z grows.
 EdgeTable::EdgeTable(double blur) {
   // Blurs from the edge, as from the body's own (kFar in shape_cover.cc).
   constexpr double kFarthest = 3.5;
   const double h = 1.0 / blur;
-  const auto step = [h](double z) { return Phi(z + h) - Phi(z - h); };
+  const auto step = [h](double z) {
+    return NormalCdf(z + h) - NormalCdf(z - h);
+  };
   const auto ratio = [h, &step](double z) {
-    return (Phi(z + h) + Phi(z - h) - 2.0 * Phi(z)) / std::max(step(z), 1e-9);
+    return (NormalCdf(z + h) + NormalCdf(z - h) - 2.0 * NormalCdf(z)) /
+           std::max(step(z), 1e-9);
   };
   // Inverted by linear interpolation between so many z: within 5e-5.
   constexpr std::size_t kSteps = 512;
@@ -136,12 +143,11 @@ float EdgeProduct(float z1, float z2, float rho) {
 
 float EdgeProductSlope(float z1, float z2, float rho) {
   const double r = std::clamp(rho, -kMostRho, kMostRho);
-  const double density = std::exp(-0.5 * static_cast<double>(z1 * z1)) *
-                         std::numbers::inv_sqrtpi / std::numbers::sqrt2;
   const double given = (static_cast<double>(z2) - r * static_cast<double>(z1)) /
                        std::sqrt(1.0 - r * r);
-  return static_cast<float>(density *
-                            (Phi(given) - Phi(static_cast<double>(z2))));
+  return static_cast<float>(
+      NormalDensity(static_cast<double>(z1)) *
+      (NormalCdf(given) - NormalCdf(static_cast<double>(z2))));
 }
 
 }  // namespace touchdown::vision::layers

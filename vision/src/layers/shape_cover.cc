@@ -49,11 +49,8 @@ double Shape::Area() const {
 NormalTable::NormalTable() {
   for (std::size_t i = 0; i < phi_.size(); ++i) {
     const double z = static_cast<double>(i) / kPerUnit - kReach;
-    phi_[i] =
-        static_cast<float>(0.5 * std::erfc(-z * std::numbers::sqrt2 / 2.0));
-    density_[i] =
-        static_cast<float>(std::exp(-0.5 * z * z) * std::numbers::inv_sqrtpi /
-                           std::numbers::sqrt2);
+    phi_[i] = static_cast<float>(NormalCdf(z));
+    density_[i] = static_cast<float>(NormalDensity(z));
   }
 }
 

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <numbers>
 #include <optional>
 
 namespace touchdown::vision::layers {
@@ -86,10 +85,7 @@ std::optional<Crossing> FitCrossing(const StillPicture& still, const Axes& axes,
     const std::size_t pixel = axes.PixelAt(u, at);
     if (!still.clear.empty() && still.clear[pixel] < kSeen) continue;
     const double z = (at - v) / blur;
-    const Eigen::Vector3d by(1.0,
-                             0.5 * std::erfc(-z * std::numbers::sqrt2 / 2.0),
-                             std::exp(-0.5 * z * z) * std::numbers::inv_sqrtpi /
-                                 std::numbers::sqrt2);
+    const Eigen::Vector3d by(1.0, NormalCdf(z), NormalDensity(z));
     normal += by * by.transpose();
     right += by * static_cast<double>(still.levels[pixel]);
   }

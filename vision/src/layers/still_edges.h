@@ -44,7 +44,7 @@ std::vector<StillLine> FindStillLines(const StillPicture& still, double blur,
                                       double least_dn);
 
 // The edge that each pixel sees; none at the picture's border. Along `lines`
-// the contrast is that of the pixels around.
+// the contrast is that of the levels across them.
 std::vector<StillEdge> FindStillEdges(const StillPicture& still,
                                       std::span<const StillLine> lines,
                                       double blur, double least_dn);
