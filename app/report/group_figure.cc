@@ -1,13 +1,11 @@
 // The group's plot, and what it shows in words and numbers.
 #include <fmt/core.h>
 
-#include <cmath>
-#include <numbers>
-
 #include "app/report/boundary_plot.h"
 #include "app/report/content.h"
 #include "app/report/sentences.h"
 #include "app/text/format.h"
+#include "touchdown/core/normal.h"
 #include "touchdown/core/units.h"
 
 namespace touchdown::report {
@@ -51,8 +49,7 @@ PlotCurve MakeChance(const analysis::BoundaryPosterior& posterior) {
     // the next.
     for (const double boundary : grid.angle_rad) {
       for (const double scatter : grid.scatter_rad) {
-        sum += grid.weight[at++] * 0.5 *
-               std::erfc((boundary - x) / (scatter * std::numbers::sqrt2));
+        sum += grid.weight[at++] * core::NormalCdf((x - boundary) / scatter);
       }
     }
     curve.angle_rad.push_back(x);

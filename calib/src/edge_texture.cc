@@ -7,6 +7,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "touchdown/core/normal.h"
+
 namespace touchdown::calib {
 namespace {
 
@@ -85,8 +87,6 @@ double LagCovariance(const StillImage& image, const Strip& strip,
   return sum / (static_cast<double>(strip.level.size()) * kRows);
 }
 
-double Phi(double z) { return 0.5 * std::erfc(-z / std::numbers::sqrt2); }
-
 }  // namespace
 
 std::optional<EdgeTexture> LearnTexture(const StillImage& image,
@@ -139,7 +139,7 @@ EdgePoint TexturedEdge(const StillImage& image, const EdgeTexture& texture,
     for (Eigen::Index i = 0; i < n; ++i) {
       const double y = static_cast<double>(from + i);
       const double z = side * (y - edge.y) / blur_px;
-      cover[i] = Phi(z);
+      cover[i] = core::NormalCdf(z);
       slope[i] = -side * std::exp(-0.5 * z * z) /
                  (blur_px * std::sqrt(2.0 * std::numbers::pi));
       value[i] = PixelLevel(image, x, from + static_cast<std::int32_t>(i));

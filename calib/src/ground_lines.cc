@@ -4,13 +4,13 @@
 #include <array>
 #include <cmath>
 #include <functional>
-#include <numbers>
 #include <numeric>
 #include <span>
 
 #include "edge_texture.h"
 #include "edge_wave.h"
 #include "touchdown/core/estimate.h"
+#include "touchdown/core/normal.h"
 #include "touchdown/core/parallel.h"
 
 namespace touchdown::calib {
@@ -250,8 +250,6 @@ double FitLine(const std::vector<EdgePoint>& points, double middle, Line& line,
   return std::max(scatter, 1e-4);
 }
 
-double NormalCdf(double z) { return 0.5 * std::erfc(-z / std::numbers::sqrt2); }
-
 // Position of a blurred step of width `blur` in one column near y0:
 // Gauss-Newton in position with the two levels solved exactly. Negative
 // strength of success (points.strength = 0) means no edge.
@@ -271,7 +269,7 @@ EdgePoint ColumnEdge(const StillImage& image, std::int32_t x, double y0,
     double n = 0, sp = 0, spp = 0, sv = 0, spv = 0;
     phi.clear();
     for (std::int32_t y = from; y <= to; ++y) {
-      const double p = NormalCdf((y - edge.y) / blur);
+      const double p = core::NormalCdf((y - edge.y) / blur);
       phi.push_back(p);
       const auto v = PixelLevel(image, x, y);
       n += 1;

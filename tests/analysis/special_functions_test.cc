@@ -5,6 +5,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "touchdown/core/normal.h"
+
 namespace touchdown::analysis {
 namespace {
 
@@ -31,7 +33,7 @@ TEST(NormalQuantile, InvertsTheDistribution) {
   EXPECT_NEAR(NormalQuantile(0.975), 1.959963984540054, 1e-14);
   EXPECT_NEAR(NormalQuantile(0.95), 1.6448536269514722, 1e-14);
   for (double p = 1e-12; p < 1.0; p = p < 0.01 ? p * 7 : p + 0.013) {
-    EXPECT_NEAR(NormalCdf(NormalQuantile(p)) / p, 1.0, 1e-12) << p;
+    EXPECT_NEAR(core::NormalCdf(NormalQuantile(p)) / p, 1.0, 1e-12) << p;
   }
   EXPECT_THROW(NormalQuantile(0.0), std::invalid_argument);
   EXPECT_THROW(NormalQuantile(1.0), std::invalid_argument);

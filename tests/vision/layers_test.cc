@@ -7,6 +7,7 @@
 #include <random>
 
 #include "tests/vision/layered_scene.h"
+#include "touchdown/core/normal.h"
 #include "vision/src/layers/align_pose.h"
 #include "vision/src/layers/body_picture.h"
 #include "vision/src/layers/columns.h"
@@ -17,8 +18,6 @@
 
 namespace touchdown::vision::layers {
 namespace {
-
-double Phi(double z) { return 0.5 * std::erfc(-z / std::numbers::sqrt2); }
 
 TEST(EdgeProduct, OfEdgesThroughAPointIsSheppards) {
   // Sheppard (1899): Phi2(0, 0; rho) = 1/4 + asin(rho) / (2 pi).
@@ -33,7 +32,9 @@ TEST(EdgeProduct, OfCoincidentEdgesIsThatOfOneEdge) {
   // rho = 1 and z1 = z2: min(Phi, Phi) - Phi^2.
   for (const double z : {-2.0, -0.7, 0.0, 0.4, 1.5}) {
     const auto at = static_cast<float>(z);
-    EXPECT_NEAR(EdgeProduct(at, at, 1.0F), Phi(z) * (1.0 - Phi(z)), 4e-3) << z;
+    EXPECT_NEAR(EdgeProduct(at, at, 1.0F),
+                core::NormalCdf(z) * (1.0 - core::NormalCdf(z)), 4e-3)
+        << z;
   }
 }
 
@@ -51,11 +52,11 @@ TEST(EdgeProduct, AgreesWithIntegrationOverThePlane) {
     for (double t = -8.0 + 0.5 * kStep; t < z1; t += kStep) {
       both += kStep * std::exp(-0.5 * t * t) /
               std::sqrt(2.0 * std::numbers::pi) *
-              Phi((z2 - rho * t) / std::sqrt(1.0 - rho * rho));
+              core::NormalCdf((z2 - rho * t) / std::sqrt(1.0 - rho * rho));
     }
     EXPECT_NEAR(EdgeProduct(static_cast<float>(z1), static_cast<float>(z2),
                             static_cast<float>(rho)),
-                both - Phi(z1) * Phi(z2), 1e-3);
+                both - core::NormalCdf(z1) * core::NormalCdf(z2), 1e-3);
   }
 }
 
@@ -78,8 +79,8 @@ TEST(StillEdges, ReadContrastAndDistanceOffABlurredEdge) {
     std::vector<float> still;
     for (int y = 0; y < 21; ++y) {
       for (int x = 0; x < kWidth; ++x) {
-        still.push_back(
-            static_cast<float>(70.0 + 120.0 * Phi((edge - y) / kBlur)));
+        still.push_back(static_cast<float>(
+            70.0 + 120.0 * core::NormalCdf((edge - y) / kBlur)));
       }
     }
     StillEdges edges(still.data(), kWidth, kBlur, 1.0);
@@ -172,7 +173,8 @@ TEST(ShapeCover, OfADiscIsThatOfItsArea) {
         const double half = std::sqrt(radius * radius - y * y);
         inside += kStep / blur * std::exp(-0.5 * y * y / (blur * blur)) /
                   std::sqrt(2.0 * std::numbers::pi) *
-                  (Phi((half - at) / blur) - Phi((-half - at) / blur));
+                  (core::NormalCdf((half - at) / blur) -
+                   core::NormalCdf((-half - at) / blur));
       }
       EXPECT_NEAR(cover.At(static_cast<float>(at), 0.0F).value, inside,
                   0.1 / (per_blur * per_blur))

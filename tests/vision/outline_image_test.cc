@@ -7,6 +7,8 @@
 #include <numbers>
 #include <string>
 
+#include "touchdown/core/normal.h"
+
 namespace touchdown::vision {
 namespace {
 
@@ -68,8 +70,6 @@ CoverBlock ComputeCover(const Shape& shape, const Points& points) {
   return cover;
 }
 
-double Phi(double z) { return 0.5 * std::erfc(-z / std::numbers::sqrt2); }
-
 // The blurred body at rest by a sum over strips of it, along each of which the
 // blur is integrated in closed form.
 double ByStrips(const Outline& o, double w, double x, double y) {
@@ -86,8 +86,8 @@ double ByStrips(const Outline& o, double w, double x, double y) {
     const double reach =
         disc ? std::sqrt(half * half - at * at) : o.half_long_px;
     const double z = (v - at) / w;
-    sum +=
-        std::exp(-0.5 * z * z) * (Phi((u + reach) / w) - Phi((u - reach) / w));
+    sum += std::exp(-0.5 * z * z) * (core::NormalCdf((u + reach) / w) -
+                                     core::NormalCdf((u - reach) / w));
   }
   return sum * 2.0 * half / kStrips / (w * std::sqrt(2.0 * std::numbers::pi));
 }

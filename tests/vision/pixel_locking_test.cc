@@ -9,12 +9,12 @@
 #include <cmath>
 #include <numbers>
 
+#include "touchdown/core/normal.h"
+
 namespace touchdown::vision {
 namespace {
 
 constexpr int kReach = 12;  // px on either side of the edge
-
-double Phi(double z) { return 0.5 * std::erfc(-z / std::numbers::sqrt2); }
 
 // By how much the least-squares place of an edge at `x0` is off. `lens_px`: the
 // blur after the pixel's box; the edge's own is larger by a twelfth of px^2.
@@ -39,8 +39,8 @@ double FitDrawnEdge(double x0, double lens_px) {
       const double z = (place - x) / blur;
       const double slope =
           std::exp(-0.5 * z * z) / (blur * std::sqrt(2.0 * std::numbers::pi));
-      gradient +=
-          slope * (levels[static_cast<std::size_t>(x + kReach)] - Phi(z));
+      gradient += slope * (levels[static_cast<std::size_t>(x + kReach)] -
+                           core::NormalCdf(z));
       curvature += slope * slope;
     }
     place += gradient / curvature;

@@ -6,9 +6,10 @@
 #include <cmath>
 #include <cstdint>
 #include <functional>
-#include <numbers>
 #include <random>
 #include <vector>
+
+#include "touchdown/core/normal.h"
 
 namespace touchdown::vision::layers {
 namespace {
@@ -19,8 +20,6 @@ constexpr double kBlur = 1.1;
 constexpr double kContrast = 120.0;
 constexpr double kLeast_dn = 4.0;
 
-double Phi(double z) { return 0.5 * std::erfc(-z / std::numbers::sqrt2); }
-
 // Bright above the edge y(x), dark below, with noise.
 std::vector<float> DrawEdge(const std::function<double(double)>& edge,
                             double noise_dn) {
@@ -30,7 +29,8 @@ std::vector<float> DrawEdge(const std::function<double(double)>& edge,
   for (std::int32_t y = 0; y < kHeight; ++y) {
     for (std::int32_t x = 0; x < kWidth; ++x) {
       levels.push_back(static_cast<float>(
-          50.0 + kContrast * Phi((edge(x) - y) / kBlur) + noise(engine)));
+          50.0 + kContrast * core::NormalCdf((edge(x) - y) / kBlur) +
+          noise(engine)));
     }
   }
   return levels;

@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <numeric>
 #include <stdexcept>
 
 #include "touchdown/analysis/statistics/special_functions.h"
+#include "touchdown/core/normal.h"
 
 namespace touchdown::analysis {
 namespace {
@@ -217,8 +217,8 @@ Equivalence EquivalenceZ(double value, double standard_error, double reference,
   Equivalence out;
   out.statistic_lower = (value - reference + margin) / standard_error;
   out.statistic_upper = (value - reference - margin) / standard_error;
-  out.p_lower = NormalCdf(-out.statistic_lower);
-  out.p_upper = NormalCdf(out.statistic_upper);
+  out.p_lower = core::NormalCdf(-out.statistic_lower);
+  out.p_upper = core::NormalCdf(out.statistic_upper);
   out.equivalent = std::max(out.p_lower, out.p_upper) < alpha;
   return out;
 }

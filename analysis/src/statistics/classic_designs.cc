@@ -10,6 +10,7 @@
 #include "touchdown/analysis/statistics/agreement.h"
 #include "touchdown/analysis/statistics/binomial_regression.h"
 #include "touchdown/analysis/statistics/special_functions.h"
+#include "touchdown/core/normal.h"
 #include "touchdown/core/require.h"
 
 namespace touchdown::analysis {
@@ -19,8 +20,8 @@ namespace {
 constexpr double kSameGap = 1e-9;
 
 double InformationWeight(double k) {
-  const double density = NormalDensity(k);
-  const double both = NormalCdf(k) * NormalCdf(-k);
+  const double density = core::NormalDensity(k);
+  const double both = core::NormalCdf(k) * core::NormalCdf(-k);
   return both > 0.0 ? density * density / both : 0.0;
 }
 

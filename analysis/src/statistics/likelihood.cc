@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "touchdown/analysis/statistics/special_functions.h"
+#include "touchdown/core/normal.h"
 
 namespace touchdown::analysis {
 namespace {
@@ -39,7 +40,7 @@ double FastLogNormalCdf(double z) {
   // takes longer, is rarely asked for below it.
   constexpr int kLow = -25;
   static const HermiteTable table(kLow, 9, LogNormalCdf, [](double x) {
-    return std::exp(std::log(NormalDensity(x)) - LogNormalCdf(x));
+    return std::exp(std::log(core::NormalDensity(x)) - LogNormalCdf(x));
   });
   if (z >= kCertain_z) return 0.0;
   return z < kLow ? LogNormalCdf(z) : table(z);
@@ -49,9 +50,10 @@ double FastLogNormalCdf(double z) {
 HermiteTable LapseTable(double lapse) {
   const double span = 1.0 - 2.0 * lapse;
   return {-kLapseEnd, kLapseEnd,
-          [=](double z) { return std::log(lapse + span * NormalCdf(z)); },
+          [=](double z) { return std::log(lapse + span * core::NormalCdf(z)); },
           [=](double z) {
-            return span * NormalDensity(z) / (lapse + span * NormalCdf(z));
+            return span * core::NormalDensity(z) /
+                   (lapse + span * core::NormalCdf(z));
           }};
 }
 
@@ -61,8 +63,9 @@ double LogSoft(double z, double p_bounce, double lapse) {
   // Standard deviations within which the table's absolute error is far below
   // the tails.
   constexpr double kEnds = 3.5;
-  const double phi = std::abs(z) < kEnds ? FastNormalCdf(z) : NormalCdf(z);
-  const double not_phi = std::abs(z) < kEnds ? 1.0 - phi : NormalCdf(-z);
+  const double phi =
+      std::abs(z) < kEnds ? FastNormalCdf(z) : core::NormalCdf(z);
+  const double not_phi = std::abs(z) < kEnds ? 1.0 - phi : core::NormalCdf(-z);
   const double bounce = lapse + (1.0 - 2.0 * lapse) * phi;
   const double not_bounce = lapse + (1.0 - 2.0 * lapse) * not_phi;
   return std::log(p_bounce * bounce + (1.0 - p_bounce) * not_bounce);
@@ -136,9 +139,10 @@ double LogLikelihood(std::span<const Cell> cells, double angle_rad,
         sum += cell.count * LogNormalCdf(toward);
         continue;
       }
-      product *= NormalCdf(toward);
+      product *= core::NormalCdf(toward);
     } else {
-      const double right = lapse + (1.0 - 2.0 * lapse) * NormalCdf(toward);
+      const double right =
+          lapse + (1.0 - 2.0 * lapse) * core::NormalCdf(toward);
       if (cell.count != 1.0) {
         sum += cell.count * std::log(right);
         continue;
@@ -156,7 +160,8 @@ double LogLikelihood(std::span<const Cell> cells, double angle_rad,
 double FastNormalCdf(double z) {
   // Standard deviations: 1 - Phi(9) is 1e-19, below a double's last digit.
   constexpr int kEnd = 9;
-  static const HermiteTable table(-kEnd, kEnd, NormalCdf, NormalDensity);
+  static const HermiteTable table(-kEnd, kEnd, core::NormalCdf,
+                                  core::NormalDensity);
   if (z <= -kCertain_z) return 0.0;
   return z >= kCertain_z ? 1.0 : table(z);
 }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "touchdown/analysis/statistics/special_functions.h"
+#include "touchdown/core/normal.h"
 
 namespace touchdown::analysis {
 namespace {
@@ -70,10 +71,10 @@ std::optional<ScoreTest> TestCovariate(
     if (!covariate[i] || !std::isfinite(*covariate[i])) continue;
     const double sigma = std::hypot(s, o.u_rad);
     const double z = (o.angle_rad - posterior.median_rad) / sigma;
-    const double p = NormalCdf(z);
-    const double variance = p * NormalCdf(-z);
+    const double p = core::NormalCdf(z);
+    const double variance = p * core::NormalCdf(-z);
     if (variance < kCertainVariance) continue;
-    const double density = NormalDensity(z) / sigma;
+    const double density = core::NormalDensity(z) / sigma;
     terms.push_back({(o.p_bounce - p) * density / variance,
                      density * density / variance, z, *covariate[i]});
     square += terms.back().weight * *covariate[i] * *covariate[i];
@@ -91,7 +92,7 @@ std::optional<ScoreTest> TestCovariate(
   if (!(information > kConstant * square)) return std::nullopt;
   ScoreTest out;
   out.z = score / std::sqrt(information);
-  out.p = 2.0 * NormalCdf(-std::abs(out.z));
+  out.p = 2.0 * core::NormalCdf(-std::abs(out.z));
   out.slope_rad = score / information;
   out.u_slope_rad = 1.0 / std::sqrt(information);
   out.trials = static_cast<int>(terms.size());

@@ -7,11 +7,12 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "touchdown/core/normal.h"
+
 namespace touchdown::analysis {
 namespace {
 
-// Of Phi(z) = erfc(-z / sqrt(2)) / 2, and of the normal density.
-constexpr double kSqrtHalf = std::numbers::sqrt2 / 2;
+// Of the normal density.
 const double kLogSqrtTwoPi = 0.5 * std::log(2 * std::numbers::pi);
 
 // Below this z the series is used: its sixth term is then 1e-14 of the first,
@@ -53,13 +54,9 @@ double BetaFraction(double a, double b, double x) {
 
 double LogNormalDensity(double z) { return -0.5 * z * z - kLogSqrtTwoPi; }
 
-double NormalDensity(double z) { return std::exp(LogNormalDensity(z)); }
-
-double NormalCdf(double z) { return 0.5 * std::erfc(-z * kSqrtHalf); }
-
 double LogNormalCdf(double z) {
-  if (z > 5.0) return std::log1p(-NormalCdf(-z));
-  if (z >= kSeriesBelow) return std::log(NormalCdf(z));
+  if (z > 5.0) return std::log1p(-core::NormalCdf(-z));
+  if (z >= kSeriesBelow) return std::log(core::NormalCdf(z));
   const double w = 1.0 / (z * z);
   const double series =
       w * (-1.0 + w * (3.0 + w * (-15.0 + w * (105.0 + w * -945.0))));

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "theory/wide.h"
+#include "touchdown/core/normal.h"
 #include "touchdown/core/require.h"
 
 namespace touchdown::analysis {
@@ -30,7 +31,7 @@ double SpinBoundaryAngle(double x, double threshold) {
 
 // P(x > value) for a normal x.
 double UpperTail(double value, double mean, double u) {
-  return 0.5 * std::erfc((value - mean) / (u * std::numbers::sqrt2));
+  return core::NormalCdf((mean - value) / u);
 }
 
 // Integrals of alpha and alpha^2 over the normal density beyond the threshold.

@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+
+#include "touchdown/core/normal.h"
 
 namespace touchdown::vision {
 
@@ -31,8 +32,7 @@ StateEvidence DecideBounce(const core::Estimate& gap, double height) {
   StateEvidence evidence;
   // P(gap > height) of a normal distribution; without u it is 0 or 1.
   const double u = std::max(gap.u, 1e-300);
-  evidence.p_bounce =
-      0.5 * std::erfc(-(gap.value - height) / u / std::numbers::sqrt2);
+  evidence.p_bounce = core::NormalCdf((gap.value - height) / u);
   const core::Interval interval = core::Interval95(gap);
   if (interval.low > height) {
     evidence.label = core::MotionState::kBounce;

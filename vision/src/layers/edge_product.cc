@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "touchdown/core/normal.h"
+
 namespace touchdown::vision::layers {
 namespace {
 
@@ -20,22 +22,13 @@ constexpr float kNearlyParallel = 0.998F;
 float NearlyParallel(double z1, double z2, double rho) {
   const double w = std::sqrt(1.0 - rho * rho);
   const double k = std::abs(z1 - z2) / w;
-  const double blunt = NormalDensity(0.5 * (z1 + z2)) * w *
-                       (NormalDensity(k) - k * NormalCdf(-k));
-  return static_cast<float>(NormalCdf(std::min(z1, z2)) - blunt -
-                            NormalCdf(z1) * NormalCdf(z2));
+  const double blunt = core::NormalDensity(0.5 * (z1 + z2)) * w *
+                       (core::NormalDensity(k) - k * core::NormalCdf(-k));
+  return static_cast<float>(core::NormalCdf(std::min(z1, z2)) - blunt -
+                            core::NormalCdf(z1) * core::NormalCdf(z2));
 }
 
 }  // namespace
-
-double NormalCdf(double z) {
-  return 0.5 * std::erfc(-z * std::numbers::sqrt2 / 2.0);
-}
-
-double NormalDensity(double z) {
-  return std::exp(-0.5 * z * z) * std::numbers::inv_sqrtpi /
-         std::numbers::sqrt2;
-}
 
 // The curvature over the step falls from 1 to -1 as z grows.
 EdgeTable::EdgeTable(double blur) {
@@ -43,10 +36,11 @@ EdgeTable::EdgeTable(double blur) {
   constexpr double kFarthest = 3.5;
   const double h = 1.0 / blur;
   const auto step = [h](double z) {
-    return NormalCdf(z + h) - NormalCdf(z - h);
+    return core::NormalCdf(z + h) - core::NormalCdf(z - h);
   };
   const auto ratio = [h, &step](double z) {
-    return (NormalCdf(z + h) + NormalCdf(z - h) - 2.0 * NormalCdf(z)) /
+    return (core::NormalCdf(z + h) + core::NormalCdf(z - h) -
+            2.0 * core::NormalCdf(z)) /
            std::max(step(z), 1e-9);
   };
   // Inverted by linear interpolation between so many z: within 5e-5.
@@ -146,8 +140,8 @@ float EdgeProductSlope(float z1, float z2, float rho) {
   const double given = (static_cast<double>(z2) - r * static_cast<double>(z1)) /
                        std::sqrt(1.0 - r * r);
   return static_cast<float>(
-      NormalDensity(static_cast<double>(z1)) *
-      (NormalCdf(given) - NormalCdf(static_cast<double>(z2))));
+      core::NormalDensity(static_cast<double>(z1)) *
+      (core::NormalCdf(given) - core::NormalCdf(static_cast<double>(z2))));
 }
 
 }  // namespace touchdown::vision::layers

@@ -66,10 +66,6 @@ class StillEdges {
   std::optional<EdgeTable> table_;
 };
 
-// Of the standard normal distribution: Phi(z), and its density.
-double NormalCdf(double z);
-double NormalDensity(double z);
-
 // Phi2(z1, z2; rho) - Phi(z1) Phi(z2), to 1e-3.
 float EdgeProduct(float z1, float z2, float rho);
 // Its derivative by z1.

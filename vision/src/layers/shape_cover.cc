@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "touchdown/core/normal.h"
+
 namespace touchdown::vision::layers {
 namespace {
 
@@ -49,8 +51,8 @@ double Shape::Area() const {
 NormalTable::NormalTable() {
   for (std::size_t i = 0; i < phi_.size(); ++i) {
     const double z = static_cast<double>(i) / kPerUnit - kReach;
-    phi_[i] = static_cast<float>(NormalCdf(z));
-    density_[i] = static_cast<float>(NormalDensity(z));
+    phi_[i] = static_cast<float>(core::NormalCdf(z));
+    density_[i] = static_cast<float>(core::NormalDensity(z));
   }
 }
 

@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <optional>
 
+#include "touchdown/core/normal.h"
+
 namespace touchdown::vision::layers {
 namespace {
 
@@ -85,7 +87,7 @@ std::optional<Crossing> FitCrossing(const StillPicture& still, const Axes& axes,
     const std::size_t pixel = axes.PixelAt(u, at);
     if (!still.clear.empty() && still.clear[pixel] < kSeen) continue;
     const double z = (at - v) / blur;
-    const Eigen::Vector3d by(1.0, NormalCdf(z), NormalDensity(z));
+    const Eigen::Vector3d by(1.0, core::NormalCdf(z), core::NormalDensity(z));
     normal += by * by.transpose();
     right += by * static_cast<double>(still.levels[pixel]);
   }

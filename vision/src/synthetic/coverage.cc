@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "touchdown/core/normal.h"
+
 namespace touchdown::vision {
 namespace {
 
@@ -18,8 +20,8 @@ class NormalIntegrals {
   NormalIntegrals() {
     for (int i = 0; i < kSize; ++i) {
       const double t = kFirst + i * kStep;
-      const double density = std::exp(-0.5 * t * t) / std::sqrt(2.0 * kPi);
-      const double phi = 0.5 * std::erfc(-t / std::numbers::sqrt2);
+      const double density = core::NormalDensity(t);
+      const double phi = core::NormalCdf(t);
       nodes_[static_cast<std::size_t>(i)] = {t * phi + density, phi, density};
     }
   }

@@ -3,16 +3,14 @@
 
 namespace touchdown::analysis {
 
-// Standard normal density and distribution function.
-double NormalDensity(double z);
+// Logarithm of the standard normal density (core/normal.h).
 double LogNormalDensity(double z);
-double NormalCdf(double z);
 
-// log NormalCdf(z), accurate where NormalCdf underflows: the asymptotic series
+// log Phi(z), accurate where Phi underflows: the asymptotic series
 // of Abramowitz and Stegun 26.2.12 below z = -30. Any finite z.
 double LogNormalCdf(double z);
 
-// z with NormalCdf(z) = p; 0 < p < 1 (throws std::invalid_argument). Relative
+// z with Phi(z) = p; 0 < p < 1 (throws std::invalid_argument). Relative
 // error of a few ulp: Newton steps on a rational start.
 double NormalQuantile(double p);
 
