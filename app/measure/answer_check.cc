@@ -192,6 +192,29 @@ AnswerCheck CheckRestitution(const Analysis& analysis,
   return check;
 }
 
+// The greatest gap from the contact on, which no body has below zero: then it
+// touched the ground. It doubts and never refuses: soft ground gives way.
+AnswerCheck CheckGap(const Analysis& analysis,
+                     const AnswerCheckLimits& limits) {
+  AnswerCheck check;
+  check.name = "gap";
+  const core::Measured& gap = analysis.contacts.first.state.max_gap_m;
+  if (!gap) {
+    check.reason = gap.error().reason;
+    return check;
+  }
+  check.verdict = Verdict::kPassed;
+  if (-gap->value > limits.most_sigmas * gap->u) {
+    check.verdict = Verdict::kDoubtful;
+    check.reason = fmt::format(
+        "from the contact on the body stays {:.2f} +- {:.2f} mm below where it "
+        "touched the ground: it has another size or shape, or the ground gave "
+        "way; check the size, the scale and --body",
+        -gap->value / core::kMillimetre, gap->u / core::kMillimetre);
+  }
+  return check;
+}
+
 // Gravity fitted freely beside g: the one check of scale and frame rate that
 // every flight holds. It doubts and never refuses: which of the two is wrong is
 // not known, and the angles hardly depend on either.
@@ -267,7 +290,8 @@ std::vector<AnswerCheck> RunAnswerChecks(const Analysis& analysis,
                                          const AnswerCheckLimits& limits) {
   return {CheckExplained(analysis, limits),   CheckSize(analysis, limits),
           CheckShape(analysis, limits),       CheckPath(analysis, limits),
-          CheckRestitution(analysis, limits), CheckGravity(analysis, limits)};
+          CheckRestitution(analysis, limits), CheckGap(analysis, limits),
+          CheckGravity(analysis, limits)};
 }
 
 void CheckAnswer(Analysis& analysis, const AnswerCheckLimits& limits) {

@@ -74,7 +74,7 @@ struct AnswerCheckLimits {
   double most_reduced_chi2 = 3.0;
   int least_degrees = 8;  // fewer tell nothing
 
-  // Numbers that nature bounds or knows (restitution, gravity): standard
+  // Numbers that nature bounds or knows (restitution, gap, gravity): standard
   // deviations beyond which there is a warning, and, for restitution, how far
   // out of 0 .. 1 an answer is refused. 0.25: more than a block's second corner
   // between two frames makes of it.

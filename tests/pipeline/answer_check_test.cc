@@ -223,6 +223,25 @@ TEST(AnswerCheck, WhatTwoChecksDoubtIsRefused) {
                     HasSubstr("94 %")));
 }
 
+// From the contact on no body's greatest gap is below zero, but by chance.
+TEST(AnswerCheck, ABodyThatStaysBelowItsGroundIsDoubted) {
+  for (const double sigmas : {-5.0, -3.0, 5.0}) {
+    Analysis analysis = Answer();
+    const core::Estimate gap{sigmas * 2e-4, 2e-4};
+    analysis.contacts.first.state.max_gap_m = gap;
+    CheckAnswer(analysis);
+    EXPECT_TRUE(analysis.contacts.first.contact.found);
+    EXPECT_EQ(std::ranges::count_if(
+                  analysis.warnings,
+                  [](const std::string& warning) {
+                    return warning.find("stays 1.00 +- 0.20 mm below") !=
+                           std::string::npos;
+                  }),
+              sigmas < -4.0 ? 1 : 0)
+        << sigmas;
+  }
+}
+
 // A body of another kind than was stated is told by name.
 TEST(AnswerCheck, NamesTheKindThatWasSeen) {
   for (const core::BodyKind seen :
