@@ -186,7 +186,8 @@ void DrawFilm(Case& c, Drawer& draw) {
   pipeline::filmed::Film& film = c.film;
   Throw& t = film.thrown;
   t.kind = l.kind;
-  t.gravity_mps2 *= 1.0 + kGravityRelativeU * draw.Normal();
+  t.gravity_mps2 =
+      core::kStandardGravity_mps2 * (1.0 + kGravityRelativeU * draw.Normal());
   c.told_px_per_m = kPxPerM * (1.0 + kScaleRelativeU * draw.Normal());
   t.before = {l.speed_px * std::cos(angle) * fps / kPxPerM, -vn * fps / kPxPerM,
               0.0};
