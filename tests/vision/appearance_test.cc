@@ -155,6 +155,29 @@ TEST_P(Appearances, AHighlightDrawsNoOutlineAside) {
   }
 }
 
+// A shading and a change of size look alike: where the frames show none the
+// size is known better, and it is right either way.
+TEST(Appearance, AFlatFaceTellsTheSizeBetter) {
+  const auto u_of_radius = [](double shading) {
+    Scene scene = Flying(core::BodyKind::kSphere);
+    scene.camera.psf_sigma_px = 1.4;
+    scene.trouble.shading_x = shading;
+    scene.trouble.shading_y = -shading;
+    double sum = 0.0;
+    constexpr std::uint64_t kSeeds = 8;
+    for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+      const auto found = Follow(scene, seed);
+      EXPECT_TRUE(found);
+      if (!found) continue;
+      const core::Estimate& radius = found->refined.body.radius_px;
+      EXPECT_NEAR(radius.value, 10.0, 3.0 * radius.u) << shading << ' ' << seed;
+      sum += radius.u;
+    }
+    return sum / kSeeds;
+  };
+  EXPECT_LT(u_of_radius(0.0), 0.6 * u_of_radius(0.2));
+}
+
 // What comes in front of the body in some frames is none of its looks.
 TEST_P(Appearances, AnObstacleIsNotLearnt) {
   Scene scene = Flying(GetParam());

@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "numbers/robust.h"
@@ -49,6 +51,45 @@ std::optional<Shading> AverageShading(const std::vector<Fitted>& all) {
     EstimatePrior(values, us, shading.level[k], shading.u[k]);
     if (!(shading.u[k] > 0.0)) return std::nullopt;
   }
+  return shading;
+}
+
+// The variance t^2 of which coefficients c_k, known to u_k, were most likely
+// drawn about 0, by expectation and maximisation: the mean of  m^2 + v,  where
+// coefficient k has the mean m and the variance v after c_k was seen.
+double MostLikelyVariance(std::span<const double> c,
+                          std::span<const double> u) {
+  // Where t is below u each step takes off a share t^2 / u^2: what is left
+  // after so many is a tenth of u.
+  constexpr int kSteps = 100;
+  const double n = static_cast<double>(c.size());
+  double square = std::inner_product(c.begin(), c.end(), c.begin(), 0.0) / n;
+  for (int step = 0; step < kSteps; ++step) {
+    double sum = 0.0;
+    for (std::size_t k = 0; k < c.size(); ++k) {
+      const double share = square / (square + u[k] * u[k]);
+      sum += share * share * c[k] * c[k] + share * u[k] * u[k];
+    }
+    square = sum / n;
+  }
+  return square;
+}
+
+// How the body may be shaded (empirical Bayes): beside its level none, but for
+// the variance that frames show which were fitted without a prior. Nothing
+// where frames that show the body whole are few.
+std::optional<Shading> LearnShadingVariance(const std::vector<Fitted>& all) {
+  std::optional<Shading> shading = AverageShading(all);
+  if (!shading) return std::nullopt;
+  // A prior that n frames share has n times the variance in each.
+  const double u =
+      std::sqrt(static_cast<double>(all.size()) *
+                MostLikelyVariance(std::span(shading->level).subspan(1),
+                                   std::span(shading->u).subspan(1)));
+  shading->level.fill(0.0);
+  shading->u.fill(u);
+  constexpr double kFree_dn = 1e6;  // more than any camera's levels
+  shading->u[0] = kFree_dn;
   return shading;
 }
 
@@ -110,6 +151,7 @@ void Refiner::LearnShape(Track& refined) {
     // step.
     const BodyImage shape = EstimateShape(sized, body.kind);
     if (IsSameSize(shape, track_.body)) TakeSize(shape, body);
+    options_.shading = LearnShadingVariance(sized);
   }
   sized = crude ? SizeByFrames(body) : SizeTogether(body);
   // Frames that an obstacle hides a little may still pass for whole: each
@@ -123,7 +165,8 @@ void Refiner::LearnShape(Track& refined) {
   // The size is not fitted with the shading held: an error of the shading is
   // common to all frames, and what it does to the size would not show in their
   // scatter.
-  if (sized.size() >= kMinSized) options_.shading = AverageShading(sized);
+  options_.shading =
+      sized.size() >= kMinSized ? AverageShading(sized) : std::nullopt;
   if (sized.size() >= kMinSized && IsSameSize(body, track_.body)) {
     refined.body = body;
   } else {
