@@ -185,12 +185,13 @@ TEST(Contact, HopThatEndsBetweenFramesIsItsFlights) {
   std::vector<double> z;
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
     filming.seed = seed;
-    const PlaneTrack track = SeenFromGround(
+    PlaneTrack track = SeenFromGround(
         synthetic::FilmTrack(
             first,
             [&](double t) { return t < second_s ? first.At(t) : second.At(t); },
             filming),
         synthetic::FilmGround(filming));
+    track.exposure = 0.05;  // its frames are instants
     const core::ContactRecord record =
         FindContacts(track, WithScale(filming)).first;
     ASSERT_TRUE(record.state.max_gap_m);
