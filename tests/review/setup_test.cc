@@ -71,7 +71,7 @@ TEST_F(Setup, LeavesNoTraceUntilItIsKept) {
   EXPECT_THAT(json["numbers"]["angle"].get<std::string>(), HasSubstr("deg"));
   EXPECT_EQ(json["settings"]["scale_source"], "body_size");
   EXPECT_EQ(json["view"]["body"]["kind"], "sphere");
-  ASSERT_EQ(json["checks"].size(), 6u);
+  ASSERT_EQ(json["checks"].size(), 7u);
   for (const Json& check : json["checks"]) {
     EXPECT_NE(check["verdict"], "refused") << check;
   }

@@ -78,7 +78,8 @@ void LeaveOutContact(const PlaneTrack& track, const FlightOptions& options,
 // The longest that a frame may have been exposed, of a frame interval. What
 // moves by v is smeared by e v: its blur has the variance  b^2 + e^2 v^2 / 12
 // along the motion, and e is known as well as that is told from b^2.
-double LongestExposure(const PlaneTrack& track, const FlightState& at) {
+double LongestExposure(const PlaneTrack& track, const FlightState& in,
+                       const FlightState& out) {
   // px. By so much a camera's blur differs between two directions, or from
   // Gauss's. More: good frames count less; less: a mixture of two motions
   // counts as a pose. In 66 raw clips of known exposure e^2 was off by at most
@@ -86,7 +87,9 @@ double LongestExposure(const PlaneTrack& track, const FlightState& at) {
   // more.
   constexpr double kBlurU_px = 0.02;
   const double dt = track.frame_interval_s;
-  const double v2 = (at.v_t * at.v_t + at.v_n * at.v_n) * dt * dt;
+  const double v2 = 0.5 * dt * dt *
+                    (in.v_t * in.v_t + in.v_n * in.v_n + out.v_t * out.v_t +
+                     out.v_n * out.v_n);
   const double u_square = 24.0 * track.blur_px * kBlurU_px / std::max(v2, 1e-9);
   // Not known: predicted frames are blurred by their codec, too (in 22 clips of
   // crf 23 the exposure was off by up to 0.6).
@@ -99,22 +102,28 @@ double LongestExposure(const PlaneTrack& track, const FlightState& at) {
 // mean of two motions. Exposed for e and  d < e / 2  from touchdown, with
 // velocities that differ by dv, the mean lies off its own motion by
 //   dv (e / 2 - d)^2 / (2 e).
-void WidenAtTouchdown(double time_s, const Event& event, PlaneTrack& track) {
-  // Standard deviations of the instant as the flight before tells it. Fewer: a
-  // mixture counts as a pose; more: frames that tell most count less. Not
-  // studied.
+// `falls_s` and `rises_s`: where either flight crosses the ground.
+void WidenAtTouchdown(double falls_s, double rises_s, const Event& event,
+                      PlaneTrack& track) {
+  // Standard deviations of the instant. Fewer: a mixture counts as a pose;
+  // more: frames that tell most count less. Not studied.
   constexpr double kSigmas = 2.0;
   const double dt = track.frame_interval_s;
-  const FlightState in = event.before->At(time_s);
-  const FlightState out = event.after->At(time_s);
-  const FlightGap gap = GapOfFlight(track, *event.before, time_s);
-  const double u = gap.u_px / std::max(std::abs(gap.rate) * dt, 1e-9);
-  const double exposure = LongestExposure(track, in);
+  const auto crossing = [&](const Flight& flight, double time_s) {
+    const FlightGap gap = GapOfFlight(track, flight, time_s);
+    return core::Estimate{time_s,
+                          gap.u_px / std::max(std::abs(gap.rate), 1e-9)};
+  };
+  const core::Estimate instant = core::Combined(
+      crossing(*event.before, falls_s), crossing(*event.after, rises_s));
+  const FlightState in = event.before->At(instant.value);
+  const FlightState out = event.after->At(instant.value);
+  const double exposure = LongestExposure(track, in, out);
   for (const std::size_t i :
        {event.before_frames.end - 1, event.after_frames.begin}) {
     PlaneSample& s = track.samples[i];
-    const double d =
-        std::max(0.0, std::abs(s.time_s - time_s) / dt - kSigmas * u);
+    const double d = std::max(
+        0.0, (std::abs(s.time_s - instant.value) - kSigmas * instant.u) / dt);
     const double within = std::max(0.0, 0.5 * exposure - d);
     const double off_s = within * within / (2.0 * exposure) * dt;
     const auto widen = [off_s](double v1, double v2, double& u_pose) {
@@ -241,7 +250,7 @@ bool MeasureRebound(PlaneTrack& track, const FlightOptions& options,
     LeaveOutContact(track, options, t1, t2, event);
     cross();
   } else {
-    WidenAtTouchdown(t1, event, track);
+    WidenAtTouchdown(t1, t2, event, track);
   }
   JointInput input = MakeJointInput(track, event, options);
   input.touchdown_s = input.release_s = 0.5 * (t1 + t2);
