@@ -101,7 +101,7 @@ TEST(ContactEvent, AFrameExposedAcrossTouchdownIsKnownLess) {
       return event.before->At(event.time_s.value).u_v_n;
     };
     // Frame 9 counts in full where it ended before.
-    if (touchdown > 9.2 && touchdown < 9.5) {
+    if (touchdown > 9.3 && touchdown < 9.5) {
       EXPECT_LT(u(0.05), 0.8 * u(1.0)) << touchdown;
     }
   }

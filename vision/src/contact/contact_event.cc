@@ -109,13 +109,16 @@ void WidenAtTouchdown(double falls_s, double rises_s, const Event& event,
   // more: frames that tell most count less. Not studied.
   constexpr double kSigmas = 2.0;
   const double dt = track.frame_interval_s;
-  const auto crossing = [&](const Flight& flight, double time_s) {
+  const auto weight = [&](const Flight& flight, double time_s) {
     const FlightGap gap = GapOfFlight(track, flight, time_s);
-    return core::Estimate{time_s,
-                          gap.u_px / std::max(std::abs(gap.rate), 1e-9)};
+    // 1 / s^2, of an instant known to a second: never 0, where it glides.
+    constexpr double kLeast = 1.0;
+    return kLeast + gap.rate * gap.rate / std::max(gap.u_px * gap.u_px, 1e-12);
   };
-  const core::Estimate instant = core::Combined(
-      crossing(*event.before, falls_s), crossing(*event.after, rises_s));
+  const double w1 = weight(*event.before, falls_s);
+  const double w2 = weight(*event.after, rises_s);
+  const core::Estimate instant{(w1 * falls_s + w2 * rises_s) / (w1 + w2),
+                               1.0 / std::sqrt(w1 + w2)};
   const FlightState in = event.before->At(instant.value);
   const FlightState out = event.after->At(instant.value);
   const double exposure = LongestExposure(track, in, out);
