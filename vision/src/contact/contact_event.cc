@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "contact/track_noise.h"
@@ -102,31 +103,21 @@ double LongestExposure(const PlaneTrack& track, const FlightState& in,
 // mean of two motions. Exposed for e and  d < e / 2  from touchdown, with
 // velocities that differ by dv, the mean lies off its own motion by
 //   dv (e / 2 - d)^2 / (2 e).
-// `falls_s` and `rises_s`: where either flight crosses the ground.
-void WidenAtTouchdown(double falls_s, double rises_s, const Event& event,
+void WidenAtTouchdown(const core::Estimate& instant_s, const Event& event,
                       PlaneTrack& track) {
   // Standard deviations of the instant. Fewer: a mixture counts as a pose;
   // more: frames that tell most count less. Not studied.
   constexpr double kSigmas = 2.0;
   const double dt = track.frame_interval_s;
-  const auto weight = [&](const Flight& flight, double time_s) {
-    const FlightGap gap = GapOfFlight(track, flight, time_s);
-    // 1 / s^2, of an instant known to a second: never 0, where it glides.
-    constexpr double kLeast = 1.0;
-    return kLeast + gap.rate * gap.rate / std::max(gap.u_px * gap.u_px, 1e-12);
-  };
-  const double w1 = weight(*event.before, falls_s);
-  const double w2 = weight(*event.after, rises_s);
-  const core::Estimate instant{(w1 * falls_s + w2 * rises_s) / (w1 + w2),
-                               1.0 / std::sqrt(w1 + w2)};
-  const FlightState in = event.before->At(instant.value);
-  const FlightState out = event.after->At(instant.value);
+  const FlightState in = event.before->At(instant_s.value);
+  const FlightState out = event.after->At(instant_s.value);
   const double exposure = LongestExposure(track, in, out);
   for (const std::size_t i :
        {event.before_frames.end - 1, event.after_frames.begin}) {
     PlaneSample& s = track.samples[i];
     const double d = std::max(
-        0.0, (std::abs(s.time_s - instant.value) - kSigmas * instant.u) / dt);
+        0.0,
+        (std::abs(s.time_s - instant_s.value) - kSigmas * instant_s.u) / dt);
     const double within = std::max(0.0, 0.5 * exposure - d);
     const double off_s = within * within / (2.0 * exposure) * dt;
     const auto widen = [off_s](double v1, double v2, double& u_pose) {
@@ -136,6 +127,21 @@ void WidenAtTouchdown(double falls_s, double rises_s, const Event& event,
     widen(in.v_n, out.v_n, s.u_height_px);
     widen(in.omega, out.omega, s.u_face_rad);
   }
+}
+
+// The instant at which both flights cross the ground, weighted by what either
+// tells of it.
+core::Estimate MeanCrossing(const PlaneTrack& track, const Event& event,
+                            double falls_s, double rises_s) {
+  const auto weight = [&](const Flight& flight, double time_s) {
+    const FlightGap gap = GapOfFlight(track, flight, time_s);
+    // 1 / s^2, of an instant known to a second: never 0, where it glides.
+    constexpr double kLeast = 1.0;
+    return kLeast + gap.rate * gap.rate / std::max(gap.u_px * gap.u_px, 1e-12);
+  };
+  const double w1 = weight(*event.before, falls_s);
+  const double w2 = weight(*event.after, rises_s);
+  return {(w1 * falls_s + w2 * rises_s) / (w1 + w2), 1.0 / std::sqrt(w1 + w2)};
 }
 
 // The last frame of a rebound that meets the ground again before the frame's
@@ -253,7 +259,23 @@ bool MeasureRebound(PlaneTrack& track, const FlightOptions& options,
     LeaveOutContact(track, options, t1, t2, event);
     cross();
   } else {
-    WidenAtTouchdown(t1, t2, event, track);
+    // First as if touchdown were in the middle of both frames' exposures: then
+    // neither draws the instant aside.
+    const PlaneSample last = samples[event.before_frames.end - 1];
+    const PlaneSample first = samples[event.after_frames.begin];
+    core::Estimate instant_s{0.5 * (t1 + t2),
+                             std::numeric_limits<double>::infinity()};
+    for (int pass = 0; pass < 2; ++pass) {
+      track.samples[event.before_frames.end - 1] = last;
+      track.samples[event.after_frames.begin] = first;
+      WidenAtTouchdown(instant_s, event, track);
+      event.before =
+          FitFlight(SelectSamples(track, event.before_frames), options);
+      event.after =
+          FitFlight(SelectSamples(track, event.after_frames), options);
+      cross();
+      instant_s = MeanCrossing(track, event, t1, t2);
+    }
   }
   JointInput input = MakeJointInput(track, event, options);
   input.touchdown_s = input.release_s = 0.5 * (t1 + t2);

@@ -76,18 +76,19 @@ double MostLikelyVariance(std::span<const double> c,
 }
 
 // How the body may be shaded (empirical Bayes): beside its level none, but for
-// the variance that frames show which were fitted without a prior. Nothing
-// where frames that show the body whole are few.
+// the variance about 0 that frames show which were fitted without a prior, and
+// for what changes from frame to frame. Nothing where frames that show the body
+// whole are few.
 std::optional<Shading> LearnShadingVariance(const std::vector<Fitted>& all) {
   std::optional<Shading> shading = AverageShading(all);
   if (!shading) return std::nullopt;
   // A prior that n frames share has n times the variance in each.
-  const double u =
+  const double shared =
       std::sqrt(static_cast<double>(all.size()) *
                 MostLikelyVariance(std::span(shading->level).subspan(1),
                                    std::span(shading->u).subspan(1)));
   shading->level.fill(0.0);
-  shading->u.fill(u);
+  for (double& u : shading->u) u = std::hypot(u, shared);
   constexpr double kFree_dn = 1e6;  // more than any camera's levels
   shading->u[0] = kFree_dn;
   return shading;
