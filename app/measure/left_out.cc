@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "app/text/format.h"
 #include "touchdown/core/units.h"
 
 namespace touchdown::pipeline {
@@ -192,8 +193,8 @@ void DescribeDrag(Analysis& analysis, const LeftOutSizes& sizes) {
   std::string text = "too few frames of flight to tell it";
   if (seen) {
     const double per_m = analysis.scale ? analysis.scale->px_per_m.value : 1.0;
-    text = fmt::format("{:.2g} +- {:.2g} of the speed lost on a {}",
-                       seen->value * per_m, seen->u * per_m,
+    text = fmt::format("{} of the speed lost on a {}",
+                       report::InAscii(report::WithU(*seen, 1.0 / per_m)),
                        analysis.scale ? "metre" : "px");
     if (ProbabilityOfDrag(analysis.contacts) > 0.5) {
       Warn("the flights bend as air bends them, " + text +

@@ -88,7 +88,7 @@ TEST(LeftOut, DragOfALightBodyByHand) {
   a.contacts.drag_per_px = core::Estimate{3e-5, 1e-5};
   DescribeDrag(a);
   EXPECT_TRUE(a.scene_model.left_out["drag"].starts_with(
-      "the flights show 0.03 +- 0.01 of the speed lost on a metre; "));
+      "the flights show 0.030 +- 0.010 of the speed lost on a metre; "));
   EXPECT_TRUE(a.warnings.empty());
   EXPECT_NEAR(ProbabilityOfDrag(a.contacts), 1.0 / (1.0 + 1e3 * std::exp(-4.5)),
               1e-12);

@@ -150,8 +150,8 @@ test('the bounce height is a line in the plot of the gap; the checks stand ' +
       all => all.map(li => [li.dataset.check, li.textContent]));
   const of = Object.fromEntries(checks);
   assert.deepEqual(Object.keys(of).sort(),
-                   ['explained', 'gravity', 'path', 'restitution', 'shape',
-                    'size']);
+                   ['explained', 'gap', 'gravity', 'path', 'restitution',
+                    'shape', 'size']);
   const document = lab.show().document;
   for (const {name, verdict} of document.checks) {
     assert.ok(of[name].includes(verdict), `${name}: ${of[name]}`);
