@@ -166,19 +166,26 @@ AnswerCheck CheckShape(const Analysis& analysis,
   return check;
 }
 
+// A check of a number: passed until it is compared, not made without one.
+AnswerCheck BeginCheck(const char* name, const core::Measured& number) {
+  AnswerCheck check;
+  check.name = name;
+  if (number) {
+    check.verdict = Verdict::kPassed;
+  } else {
+    check.reason = number.error().reason;
+  }
+  return check;
+}
+
 // What is measured beside what nature allows.
 AnswerCheck CheckRestitution(const Analysis& analysis,
                              const AnswerCheckLimits& limits) {
-  AnswerCheck check;
-  check.name = "restitution";
   const core::Measured& e = analysis.contacts.first.motion.restitution;
-  if (!e) {
-    check.reason = e.error().reason;
-    return check;
-  }
+  AnswerCheck check = BeginCheck("restitution", e);
+  if (!e) return check;
   // Distance from 0 .. 1; negative within.
   const double beyond = std::max(-e->value, e->value - 1.0);
-  check.verdict = Verdict::kPassed;
   if (beyond > limits.most_sigmas * e->u) {
     // It comes out below the line: no rebound at all. Above 1 the film may run
     // backwards, or a second corner have struck between two frames.
@@ -196,14 +203,9 @@ AnswerCheck CheckRestitution(const Analysis& analysis,
 // touched the ground. It doubts and never refuses: soft ground gives way.
 AnswerCheck CheckGap(const Analysis& analysis,
                      const AnswerCheckLimits& limits) {
-  AnswerCheck check;
-  check.name = "gap";
   const core::Measured& gap = analysis.contacts.first.state.max_gap_m;
-  if (!gap) {
-    check.reason = gap.error().reason;
-    return check;
-  }
-  check.verdict = Verdict::kPassed;
+  AnswerCheck check = BeginCheck("gap", gap);
+  if (!gap) return check;
   if (-gap->value > limits.most_sigmas * gap->u) {
     check.verdict = Verdict::kDoubtful;
     check.reason = fmt::format(
@@ -220,18 +222,13 @@ AnswerCheck CheckGap(const Analysis& analysis,
 // not known, and the angles hardly depend on either.
 AnswerCheck CheckGravity(const Analysis& analysis,
                          const AnswerCheckLimits& limits) {
-  AnswerCheck check;
-  check.name = "gravity";
-  check.is_of_units = true;
   const core::Measured& g = analysis.contacts.first.motion.gravity_check_mps2;
-  if (!g) {
-    check.reason = g.error().reason;
-    return check;
-  }
+  AnswerCheck check = BeginCheck("gravity", g);
+  check.is_of_units = true;
+  if (!g) return check;
   // g varies by 0.5 % over the earth; 0.2 % is a standard deviation of that.
   const core::Estimate known{core::kStandardGravity_mps2,
                              0.002 * core::kStandardGravity_mps2};
-  check.verdict = Verdict::kPassed;
   if (core::Disagreement(*g, known) > limits.most_sigmas) {
     check.verdict = Verdict::kDoubtful;
     // g_fit / g = true scale / stated scale = (stated rate / true rate)^2.

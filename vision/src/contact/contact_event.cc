@@ -100,9 +100,7 @@ double LongestExposure(const PlaneTrack& track, const FlightState& in,
 }
 
 // The frames beside touchdown may have been exposed across it, and then show a
-// mean of two motions. Exposed for e and  d < e / 2  from touchdown, with
-// velocities that differ by dv, the mean lies off its own motion by
-//   dv (e / 2 - d)^2 / (2 e).
+// mean of two motions (MixtureOffset).
 void WidenAtTouchdown(const core::Estimate& instant_s, const Event& event,
                       PlaneTrack& track) {
   // Standard deviations of the instant. Fewer: a mixture counts as a pose;
@@ -118,8 +116,8 @@ void WidenAtTouchdown(const core::Estimate& instant_s, const Event& event,
     const double d = std::max(
         0.0,
         (std::abs(s.time_s - instant_s.value) - kSigmas * instant_s.u) / dt);
-    const double within = std::max(0.0, 0.5 * exposure - d);
-    const double off_s = within * within / (2.0 * exposure) * dt;
+    const double off_s =
+        MixtureOffset(exposure, std::max(0.0, 0.5 * exposure - d)) * dt;
     const auto widen = [off_s](double v1, double v2, double& u_pose) {
       u_pose = std::hypot(u_pose, (v2 - v1) * off_s);
     };
@@ -146,8 +144,8 @@ core::Estimate MeanCrossing(const PlaneTrack& track, const Event& event,
 
 // The last frame of a rebound that meets the ground again before the frame's
 // exposure ends, or may do so, is a mean of two motions. What follows the blow
-// is another motion by as much as the flight's own; a mean over the exposure e
-// is then off by at most  rate e / 8,  where the blow lies in its middle.
+// is another motion by as much as the flight's own; the blow lies in the
+// exposure's middle at the earliest.
 void WidenAtNextImpact(const Event& event, PlaneTrack& track) {
   const std::size_t last = event.after_frames.end - 1;
   if (event.after_frames.end >= track.samples.size()) return;  // the film ends
@@ -157,7 +155,7 @@ void WidenAtNextImpact(const Event& event, PlaneTrack& track) {
   if (GapOfFlight(track, *event.after, ends_s).gap_px > 0.0) return;
   const FlightState at = event.after->At(s.time_s);
   const auto widen = [&](double rate, double& u) {
-    u = std::hypot(u, rate * exposure_s / 8.0);
+    u = std::hypot(u, rate * MixtureOffset(exposure_s, 0.5 * exposure_s));
   };
   widen(at.v_t, s.u_along_px);
   widen(GapOfFlight(track, *event.after, ends_s).rate, s.u_height_px);

@@ -61,4 +61,10 @@ FlightGap GapOfFlight(const PlaneTrack& track, const Flight& flight,
 // correlation of its poses ask for.
 core::Estimate MeanRestingGap(std::span<const PlaneSample> samples);
 
+// A frame whose exposure e goes on for b beyond a blow shows a mean of two
+// motions: over the change of velocity it lies off the first by  b^2 / (2 e).
+inline double MixtureOffset(double exposure, double beyond) {
+  return beyond * beyond / (2.0 * exposure);
+}
+
 }  // namespace touchdown::vision

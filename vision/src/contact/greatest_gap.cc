@@ -284,8 +284,8 @@ void Finder::SearchStretch(const Stretch& stretch) {
 
 // A frame that was exposed across the touchdown shows the mean of two motions:
 // of a body that rests from then on, a part of the approach. With b, the part
-// of the exposure e before it, and the approach's rate r, all in frames,
-//   shift = r b^2 / (2 e).
+// of the exposure before it, and the approach's rate r, all in frames, by
+//   r MixtureOffset(exposure, b).
 // The samples since the contact are put down by it.
 PlaneTrack TakeOutApproach(const PlaneTrack& track, std::size_t from,
                            const Event& event) {
@@ -296,7 +296,7 @@ PlaneTrack TakeOutApproach(const PlaneTrack& track, std::size_t from,
   const auto shift_of = [&](const PlaneSample& s, double exposure) {
     const double before = std::clamp(
         0.5 * exposure - (s.time_s - event.time_s.value) / dt, 0.0, exposure);
-    return std::max(rate, 0.0) * before * before / (2.0 * exposure);
+    return std::max(rate, 0.0) * MixtureOffset(exposure, before);
   };
   for (std::size_t i = from; i < out.samples.size(); ++i) {
     PlaneSample& s = out.samples[i];
