@@ -216,6 +216,14 @@ vision::SceneLook ReadLook(Object object) {
     mark.Number("radius", 1.0, m.radius);
     mark.Done();
   }
+  if (object.Has("face")) {
+    Object face = object.Child("face");
+    vision::SceneFace& f = look.face.emplace();
+    face.Number("amplitude", 1.0, f.amplitude);
+    face.Number("correlation_px", 1.0, f.correlation_px);
+    face.Whole("seed", 0, std::numeric_limits<std::int64_t>::max(), f.seed);
+    face.Done();
+  }
   object.Done();
   return look;
 }

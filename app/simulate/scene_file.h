@@ -21,7 +21,8 @@
 //               row_delay_us
 //   look        body_level, background_level, ground_level, gradient_x,
 //               gradient_y, texture_amplitude, texture_correlation_px,
-//               texture_seed, hole, mark ({"level", "distance", "radius"})
+//               texture_seed, hole, mark ({"level", "distance", "radius"}),
+//               face ({"amplitude", "correlation_px", "seed"})
 //   trouble     shading_x, shading_y, highlight_level, highlight_x,
 //               highlight_y, highlight_sigma, shadow_depth, flicker_amplitude,
 //               flicker_hz, wave_amplitude_px, wave_length_px, specks,

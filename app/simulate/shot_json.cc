@@ -94,6 +94,11 @@ ordered_json SceneJson(const Shot& shot) {
                              {"distance", look.mark->distance},
                              {"radius", look.mark->radius}};
   }
+  if (look.face) {
+    scene["look"]["face"] = {{"amplitude", look.face->amplitude},
+                             {"correlation_px", look.face->correlation_px},
+                             {"seed", look.face->seed}};
+  }
   // A clean scene has no section of troubles, so that a reader sees at once
   // that there are none.
   if (vision::HasTrouble(shot.trouble)) {

@@ -316,10 +316,21 @@ TEST(SceneFile, HasALens) {
   EXPECT_EQ(turned.look.hole, 0.25);
   ASSERT_TRUE(turned.look.mark);
   EXPECT_EQ(turned.look.mark->distance, 0.6);
+  EXPECT_FALSE(turned.look.face);
   shot.camera.lens->k1 = -9.0;
   EXPECT_THAT(
       [&] { ParseScene(SceneText(shot), "text"); },
       ::testing::ThrowsMessage<core::InputError>(HasSubstr("camera.lens.k1")));
+}
+
+TEST(SceneFile, HasAPictureOnTheFace) {
+  Shot shot = ExampleShot();
+  shot.look.face = vision::SceneFace{0.07, 2.5, 12};
+  const Shot back = ParseScene(SceneText(shot), "text");
+  ASSERT_TRUE(back.look.face);
+  EXPECT_EQ(back.look.face->amplitude, 0.07);
+  EXPECT_EQ(back.look.face->correlation_px, 2.5);
+  EXPECT_EQ(back.look.face->seed, 12U);
 }
 
 }  // namespace

@@ -12,7 +12,9 @@
 
 #include "synthetic/coverage.h"
 #include "synthetic/gaussian.h"
+#include "synthetic/gaussian_field.h"
 #include "synthetic/lens_silhouette.h"
+#include "synthetic/render_face.h"
 #include "synthetic/render_trouble.h"
 
 namespace touchdown::vision {
@@ -112,6 +114,9 @@ std::vector<SubExposure> SubExposures(const Scene& scene, double middle_s) {
           ? 0.0
           : 0.5 * scene.camera.px_per_m *
                 std::hypot(scene.body.long_m->value, scene.body.short_m->value);
+  if (scene.look.face && scene.body.kind == core::BodyKind::kSphere) {
+    turning_radius = HalfSmallest(scene.body) * scene.camera.px_per_m;
+  }
   if (const auto& mark = scene.look.mark) {
     turning_radius = std::max(turning_radius, (mark->distance + mark->radius) *
                                                   HalfSmallest(scene.body) *
@@ -174,52 +179,6 @@ double Illumination(const SceneLook& look, const SceneCamera& camera, int x,
   return std::max(0.0, 1.0 + look.gradient_x * across + look.gradient_y * down);
 }
 
-// A Gaussian random field of variance 1: white noise, blurred along rows and
-// then along columns.
-std::vector<float> Texture(const SceneCamera& camera, const SceneLook& look) {
-  std::mt19937_64 engine(look.texture_seed);
-  const GaussianSource gaussian;
-  // White noise blurred by s has the autocorrelation exp(-d^2 / (4 s^2)).
-  const double s = look.texture_correlation_px / std::sqrt(2.0);
-  const int reach = static_cast<int>(std::ceil(4.0 * s));
-  std::vector<float> kernel;
-  double squares = 0.0;
-  for (int k = -reach; k <= reach; ++k) {
-    const double value = s > 0.0 ? std::exp(-0.5 * k * k / (s * s)) : 1.0;
-    squares += value * value;
-    kernel.push_back(static_cast<float>(value));
-  }
-  // Unit sum of squares: white noise of variance 1 keeps it.
-  for (float& value : kernel) value /= static_cast<float>(std::sqrt(squares));
-
-  const int wide = camera.width_px + 2 * reach;
-  const int high = camera.height_px + 2 * reach;
-  const auto size = [](int a, int b) {
-    return static_cast<std::size_t>(a) * static_cast<std::size_t>(b);
-  };
-  std::vector<float> along(size(camera.width_px, high), 0.0f);
-  std::vector<float> white(static_cast<std::size_t>(wide));
-  for (int y = 0; y < high; ++y) {
-    for (float& value : white) value = gaussian(engine);
-    float* row = along.data() + size(y, camera.width_px);
-    for (int k = 0; k <= 2 * reach; ++k) {
-      const float weight = kernel[static_cast<std::size_t>(k)];
-      const float* shifted = white.data() + k;
-      for (int x = 0; x < camera.width_px; ++x) row[x] += weight * shifted[x];
-    }
-  }
-  std::vector<float> field(size(camera.width_px, camera.height_px), 0.0f);
-  for (int y = 0; y < camera.height_px; ++y) {
-    float* out = field.data() + size(y, camera.width_px);
-    for (int k = 0; k <= 2 * reach; ++k) {
-      const float weight = kernel[static_cast<std::size_t>(k)];
-      const float* in = along.data() + size(y + k, camera.width_px);
-      for (int x = 0; x < camera.width_px; ++x) out[x] += weight * in[x];
-    }
-  }
-  return field;
-}
-
 }  // namespace
 
 core::Frame SensorImage::view() const {
@@ -264,7 +223,11 @@ SceneRenderer::SceneRenderer(Scene scene) : scene_(std::move(scene)) {
   const auto pixels =
       static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
   std::vector<float> texture;
-  if (look.texture_amplitude > 0.0) texture = Texture(camera, look);
+  if (look.texture_amplitude > 0.0) {
+    texture = GaussianField(width, height, look.texture_correlation_px,
+                            look.texture_seed);
+  }
+  if (look.face) face_ = std::make_shared<FacePicture>(scene_);
   background_ = {width, height, std::vector<float>(pixels)};
   ground_.resize(pixels);
   light_.resize(pixels);
@@ -300,6 +263,7 @@ namespace {
 // The body during one exposure.
 struct Exposed {
   struct Part {
+    ScenePose pose;
     Silhouette body;
     std::optional<Silhouette> hole;
     std::optional<Silhouette> mark;
@@ -316,7 +280,7 @@ Exposed Expose(const Scene& scene, double middle_s) {
   e.max_x = e.max_y = std::numeric_limits<double>::lowest();
   for (const SubExposure& sub : SubExposures(scene, middle_s)) {
     const ScenePose pose = EvaluatePose(scene, sub.time_s);
-    Exposed::Part part{Draw(scene, pose), std::nullopt, std::nullopt,
+    Exposed::Part part{pose, Draw(scene, pose), std::nullopt, std::nullopt,
                        sub.weight};
     const SceneLook& look = scene.look;
     if (look.hole > 0.0) part.hole = DrawDisc(scene, pose, 0.0, look.hole);
@@ -337,10 +301,13 @@ Exposed Expose(const Scene& scene, double middle_s) {
 
 // Shares of the pixels of a window.
 struct SceneRenderer::Covers {
-  Covers(const Exposed& exposed, const core::PixelRect& window, double sigma)
-      : body(window, sigma),
-        below(exposed.dips ? window : core::PixelRect{}, sigma),
-        mark(exposed.parts[0].mark ? window : core::PixelRect{}, sigma) {
+  Covers(const SceneCamera& camera, const FacePicture* picture,
+         const Exposed& exposed, const core::PixelRect& window)
+      : body(window, camera.psf_sigma_px),
+        below(exposed.dips ? window : core::PixelRect{}, camera.psf_sigma_px),
+        mark(exposed.parts[0].mark ? window : core::PixelRect{},
+             camera.psf_sigma_px),
+        face(camera, picture ? window : core::PixelRect{}) {
     for (const Exposed::Part& part : exposed.parts) {
       body.Add(part.body.body, part.weight);
       if (exposed.dips) below.Add(part.body.below, part.weight);
@@ -350,15 +317,23 @@ struct SceneRenderer::Covers {
         if (exposed.dips) below.Add(part.hole->below, -part.weight);
       }
       if (part.mark) mark.Add(part.mark->body, part.weight);
+      if (picture) {
+        face.Add(*picture, part.body.body, part.pose, part.weight);
+        if (part.hole) {
+          face.Add(*picture, part.hole->body, part.pose, -part.weight);
+        }
+      }
     }
     body.Finish();
     below.Finish();
     mark.Finish();
+    face.Finish();
   }
 
   CoverageMap body;
   CoverageMap below;
   CoverageMap mark;  // of the body
+  FaceMap face;      // of full scale
 };
 
 // Adds the body to rows `window`, over the background.
@@ -373,6 +348,7 @@ void SceneRenderer::DrawBody(const Covers& covers, bool dips,
     const double* covered = covers.body.row(y);
     const double* hidden = dips ? covers.below.row(y) : nullptr;
     const double* marked = look.mark ? covers.mark.row(y) : nullptr;
+    const float* pictured = face_ ? covers.face.row(y) : nullptr;
     const std::size_t first = static_cast<std::size_t>(y) *
                                   static_cast<std::size_t>(camera.width_px) +
                               static_cast<std::size_t>(window.x);
@@ -391,6 +367,9 @@ void SceneRenderer::DrawBody(const Covers& covers, bool dips,
       if (marked != nullptr) {
         change += static_cast<double>(light_[i]) *
                   (look.mark->level - look.body_level) * marked[x];
+      }
+      if (pictured != nullptr) {
+        change += static_cast<double>(light_[i] * pictured[x]);
       }
       image.dn[i] += static_cast<float>(change);
     }
@@ -412,15 +391,14 @@ CleanImage SceneRenderer::RenderClean(std::int64_t index) const {
           ClippedWindow(exposed.min_x, exposed.max_x, y, y, margin, camera);
       row.y = y;
       row.height = 1;
-      DrawBody(Covers(exposed, row, camera.psf_sigma_px), exposed.dips, image);
+      DrawBody(Covers(camera, face_.get(), exposed, row), exposed.dips, image);
     }
     return image;
   }
   const Exposed exposed = Expose(scene_, middle_s);
-  const Covers covers(exposed,
+  const Covers covers(camera, face_.get(), exposed,
                       ClippedWindow(exposed.min_x, exposed.max_x, exposed.min_y,
-                                    exposed.max_y, margin, camera),
-                      camera.psf_sigma_px);
+                                    exposed.max_y, margin, camera));
   DrawBody(covers, exposed.dips, image);
   if (trouble_) {
     trouble_->Draw(scene_, middle_s,

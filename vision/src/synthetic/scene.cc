@@ -140,6 +140,16 @@ void Validate(const Scene& scene) {
       "look.texture_correlation_px", look.texture_correlation_px, "0 .. 1000");
   Require(look.hole >= 0.0 && look.hole < 1.0, "look.hole", look.hole,
           "at least 0, below 1");
+  if (look.face) {
+    Require(IsLevel(look.face->amplitude) && look.face->amplitude > 0.0,
+            "look.face.amplitude", look.face->amplitude,
+            "more than 0, at most 1");
+    Require(
+        look.face->correlation_px >= 1.0 && look.face->correlation_px <= 1e3,
+        "look.face.correlation_px", look.face->correlation_px, "1 .. 1000");
+    Require(!camera.lens, "look.face.amplitude", look.face->amplitude,
+            "absent where there is a lens");
+  }
   if (look.mark) {
     Require(IsLevel(look.mark->level), "look.mark.level", look.mark->level,
             "0 .. 1");

@@ -52,6 +52,7 @@ struct SensorImage {
   core::Frame view() const;  // valid as long as this
 };
 
+class FacePicture;      // src/synthetic/render_face.h
 class TroubleRenderer;  // src/synthetic/render_trouble.h
 
 // Renders the frames of one scene over a background that is drawn once. Safe
@@ -79,6 +80,7 @@ class SceneRenderer {
   std::vector<float> ground_;        // ground minus background, in DN, textured
   std::vector<float> light_;         // illumination times full scale, in DN
   std::vector<float> ground_share_;  // of each pixel, where trouble needs it
+  std::shared_ptr<const FacePicture> face_;         // or nothing
   std::shared_ptr<const TroubleRenderer> trouble_;  // or nothing
 };
 

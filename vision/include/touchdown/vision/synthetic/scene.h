@@ -68,6 +68,14 @@ struct SceneMark {
   double radius = 0.25;   // more than 0
 };
 
+// A picture on the body's face that turns with it in the plane: a Gaussian
+// random field about the body's level, cut off where it would leave 0 .. 1.
+struct SceneFace {
+  double amplitude = 0.05;      // standard deviation, of full scale; > 0
+  double correlation_px = 3.0;  // l of exp(-d^2 / (2 l^2)); at least 1
+  std::uint64_t seed = 1;
+};
+
 // Brightness, as fractions of full scale at the picture's centre.
 struct SceneLook {
   double body_level = 0.15;
@@ -84,6 +92,7 @@ struct SceneLook {
   double texture_correlation_px = 2.0;
   std::uint64_t texture_seed = 1;
   std::optional<SceneMark> mark;
+  std::optional<SceneFace> face;  // not with a lens
   // A ring: through a concentric round hole of this share of the body's
   // smallest size what is behind it is seen. 0 (none) to below 1; a mark lies
   // on the ring: distance - radius >= hole.
