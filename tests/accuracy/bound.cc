@@ -7,8 +7,10 @@
 #include <functional>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <vector>
 
+#include "tests/accuracy/face_information.h"
 #include "touchdown/core/units.h"
 #include "touchdown/vision/synthetic/scene.h"
 
@@ -36,9 +38,6 @@ double EdgeInformation(double contrast, double blur2, double variance) {
 
 // What follows is written apart from vision's own fit on purpose: a bound that
 // shared its parameters would share its mistakes.
-//
-// Poses are (along, height, angle, half long or radius, half short).
-constexpr int kPose = 5;
 using PoseMatrix = Eigen::Matrix<double, kPose, kPose>;
 
 // Whether an obstacle hides a point that is so far from the contact, px along
@@ -230,6 +229,8 @@ Bound BoundOf(const Case& c) {
   };
 
   MatrixXd information = MatrixXd::Zero(kParameters, kParameters);
+  std::optional<FaceInformation> face;
+  if (film.look.face) face.emplace(c, PixelVariance(c));
   Bound bound;
   for (std::int64_t f = film.lead_in; f < film.frames; ++f) {
     const double time = static_cast<double>(f);
@@ -240,16 +241,33 @@ Bound BoundOf(const Case& c) {
                         before ? truth[kVy] : truth[kVy2]);
     const MatrixXd j =
         gradient([&](const VectorXd& p) { return model.PoseAt(p, time); });
-    information += j.transpose() * pixels * j;
+    if (face) {
+      face->Add(f, j);
+    } else {
+      information += j.transpose() * pixels * j;
+    }
     if (f == film.lead_in) bound.centre_px = 1.0 / std::sqrt(pixels(0, 0));
   }
+  if (face) information += face->Eliminate();
   const Eigen::Matrix2d ground = GroundInformation(c);
   information.block<2, 2>(kGround, kGround) += ground;
   const double u_gravity =
       truth[kGravity] * std::hypot(kScaleRelativeU, kGravityRelativeU);
   information(kGravity, kGravity) += 1.0 / (u_gravity * u_gravity);
+  const auto tell = [&](Parameter size,
+                        const std::optional<core::Estimate>& told_m) {
+    if (!told_m) return;
+    const double u_px = told_m->u * scale;
+    information(size, size) += 1.0 / (u_px * u_px);
+  };
+  tell(kHalfLong, c.told_half_long_m);
+  tell(kHalfShort, c.told_half_short_m);
   if (!model.turns) {
-    for (const int unused : {kHalfShort, kFace, kOmega, kOmega2}) {
+    // A ball's picture tells how fast it turns, not where it began.
+    std::vector<int> unused_parameters = {kHalfShort, kFace};
+    if (!face)
+      unused_parameters.insert(unused_parameters.end(), {kOmega, kOmega2});
+    for (const int unused : unused_parameters) {
       information.row(unused).setZero();
       information.col(unused).setZero();
       information(unused, unused) = 1.0;

@@ -15,7 +15,8 @@
 // rectangle its angle and its two angular velocities. The centre's path is
 // continuous at contact and its height there is that of the body on the ground.
 // What `analyze` is told beside the pixels counts as told: the scale, and
-// standard gravity.
+// standard gravity. Where the body's face has a picture, that and the still
+// picture are unknown (face_information.h).
 #pragma once
 
 #include "tests/accuracy/design.h"

@@ -103,6 +103,7 @@ void DrawLevels(Levels& l, Drawer& draw) {
     case Hardship::kWavy:
     case Hardship::kSpecks:
     case Hardship::kObstacle:
+    case Hardship::kPictured:
       break;  // DrawTrouble
   }
 }
@@ -166,6 +167,25 @@ void DrawTrouble(Case& c, Drawer& draw) {
           camera.travels_left ? camera.width_px + 100 - edge : edge + 100;
       obstacle.height = camera.height_px;
       trouble.obstacle_level = 0.5 * c.film.look.background_level;
+      break;
+    }
+    case Hardship::kPictured: {
+      vision::SceneFace& face = c.film.look.face.emplace();
+      face.amplitude = draw.Uniform(0.2, 0.6) * std::abs(l.contrast);
+      face.correlation_px = draw.Uniform(2.5, 5.0);
+      face.seed = c.seed;
+      const auto told = [&](double half_m) {
+        const double u_m = kSizeRelativeU * half_m;
+        return core::Estimate{half_m + u_m * draw.Normal(), u_m, std::nullopt};
+      };
+      c.told_half_long_m = told(c.film.thrown.half_long_m);
+      c.told_half_short_m = told(c.film.thrown.half_short_m);
+      if (l.kind == BodyKind::kSphere) {
+        // Up to half of rolling either way before, up to rolling after.
+        Throw& t = c.film.thrown;
+        t.before.omega = draw.Uniform(-0.5, 0.5) * t.before.vx / t.half_long_m;
+        t.after.omega = -draw.Uniform(0.0, 1.0) * t.after.vx / t.half_long_m;
+      }
       break;
     }
     default:
@@ -279,6 +299,8 @@ const char* Name(Hardship hardship) {
       return "specks";
     case Hardship::kObstacle:
       return "obstacle";
+    case Hardship::kPictured:
+      return "pictured face";
   }
   return "?";
 }

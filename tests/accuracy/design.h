@@ -9,6 +9,7 @@
 
 #include "tests/pipeline/filmed.h"
 #include "touchdown/calib/plane.h"
+#include "touchdown/core/estimate.h"
 
 namespace touchdown::accuracy {
 
@@ -29,14 +30,15 @@ enum class Hardship {
   kWavy,          // the ground's edge goes up and down by 1 px
   kSpecks,        // five specks fly about
   kObstacle,      // it comes out from behind something
+  kPictured,      // a picture on its face; a ball spins
 };
 const char* Name(Hardship hardship);
 inline constexpr Hardship kHardships[] = {
-    Hardship::kSmall,   Hardship::kDim,          Hardship::kFewFrames,
-    Hardship::kFast,    Hardship::kLongExposure, Hardship::kTexture,
-    Hardship::kSlow,    Hardship::kShaded,       Hardship::kShadow,
-    Hardship::kFlicker, Hardship::kWavy,         Hardship::kSpecks,
-    Hardship::kObstacle};
+    Hardship::kSmall,    Hardship::kDim,          Hardship::kFewFrames,
+    Hardship::kFast,     Hardship::kLongExposure, Hardship::kTexture,
+    Hardship::kSlow,     Hardship::kShaded,       Hardship::kShadow,
+    Hardship::kFlicker,  Hardship::kWavy,         Hardship::kSpecks,
+    Hardship::kObstacle, Hardship::kPictured};
 
 // Levels of one clip, as chosen; the table is broken down by them.
 struct Levels {
@@ -62,13 +64,18 @@ struct Case {
   // What `analyze` is told: the true scale but for its uncertainty. Gravity is
   // standard gravity there, and in the film what it may be somewhere on earth.
   double told_px_per_m = 0.0;
+  // Half the long side, or the radius, and half the short one: of a pictured
+  // face, whose outline alone does not tell them.
+  std::optional<core::Estimate> told_half_long_m;
+  std::optional<core::Estimate> told_half_short_m;
   std::optional<double> rise_m;  // of a state's case: the greatest gap
 };
 
-// Relative u of what is told beside the pixels: the scale, and local gravity
-// (vision/contact.h).
+// Relative u of what is told beside the pixels: the scale, local gravity
+// (vision/contact.h), and where it is told the size (a calliper).
 inline constexpr double kScaleRelativeU = 1e-4;
 inline constexpr double kGravityRelativeU = 0.002;
+inline constexpr double kSizeRelativeU = 0.001;
 
 // Case `index` of the regular part, or of one hardship. The same index gives
 // the same case, whatever else is drawn.

@@ -18,6 +18,18 @@ pipeline::AnalyzeOptions Told(const Case& c) {
   options.body_kind = c.film.thrown.kind;
   options.scale_px_per_m = core::Estimate{
       c.told_px_per_m, kScaleRelativeU * c.told_px_per_m, std::nullopt};
+  const auto whole = [](const core::Estimate& half) {
+    return core::Estimate{2.0 * half.value, 2.0 * half.u, std::nullopt};
+  };
+  if (c.told_half_long_m) {
+    const core::Estimate size = whole(*c.told_half_long_m);
+    if (options.body_kind == core::BodyKind::kSphere) {
+      options.diameter_m = size;
+    } else {
+      options.long_m = size;
+      options.short_m = whole(*c.told_half_short_m);
+    }
+  }
   return options;
 }
 

@@ -87,5 +87,30 @@ TEST(Accuracy, TheBoundFollowsTheTextbook) {
   EXPECT_NEAR(BoundOf(c).centre_px, 0.0079, 0.00005);
 }
 
+// Where the picture on its face is none, a body is as well known as by the
+// closed form, which counts its level, its corners and the still picture as
+// known; with one the picture takes from what the outline tells, and what it
+// tells of a ball's turning is not asked for.
+TEST(Accuracy, TheBoundOfAPictureBeginsAtThatOfNone) {
+  for (const std::uint64_t i : {2U, 6U, 7U}) {
+    SCOPED_TRACE(i);
+    const Case pictured = Draw(i, Hardship::kPictured);
+    ASSERT_TRUE(pictured.film.look.face);
+    Case plain = pictured;
+    plain.film.look.face.reset();
+    Case faint = pictured;
+    faint.film.look.face->amplitude = 1e-5;
+    const Bound without = BoundOf(plain);
+    const Bound nearly = BoundOf(faint);
+    const Bound with = BoundOf(pictured);
+    EXPECT_NEAR(nearly.approach_rad / without.approach_rad, 1.0, 0.05);
+    EXPECT_NEAR(nearly.frame / without.frame, 1.0, 0.05);
+    if (pictured.levels.kind == core::BodyKind::kRectangle) {
+      EXPECT_NEAR(nearly.face_rad / without.face_rad, 1.0, 0.08);
+      EXPECT_GT(with.face_rad, 1.5 * without.face_rad);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace touchdown::accuracy
