@@ -6,7 +6,7 @@
 // with the body m, its picture T about its centre c, turned by R, and the
 // kernel K of render.h. The product m T is sampled at the middles of kFine^2
 // parts of each pixel, m as the exact share of the part. With K cut at 5.2
-// sigma that is right to 1e-3 of T's standard deviation (sigma 0 or at least
+// sigma that is right to 3e-3 of T's standard deviation (sigma 0 or at least
 // 0.4, correlation at least 2 px; tested).
 #pragma once
 
