@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
+#include <string>
 
 #include "touchdown/core/normal.h"
 #include "touchdown/vision/synthetic/render.h"
@@ -112,17 +113,30 @@ TEST(RenderFace, IsMirroredWithTheDirectionOfTravel) {
 }
 
 TEST(RenderFace, RefusedByName) {
-  Scene scene = PicturedDisc(0.8);
-  EXPECT_NO_THROW(Validate(scene));
-  scene.look.face->correlation_px = 0.2;
-  EXPECT_THROW(Validate(scene), std::invalid_argument);
-  scene = PicturedDisc(0.8);
-  scene.look.face->amplitude = 0.0;
-  EXPECT_THROW(Validate(scene), std::invalid_argument);
-  scene = PicturedDisc(0.8);
-  scene.camera.lens =
-      calib::Lens{900.0, 900.0, 32.0, 30.0, -0.01, 0.0, 0.0, 0.0, 0.0};
-  EXPECT_THROW(Validate(scene), std::invalid_argument);
+  const auto refused = [](auto set) {
+    Scene scene = PicturedDisc(0.8);
+    set(scene);
+    try {
+      Validate(scene);
+    } catch (const std::invalid_argument& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_EQ(refused([](Scene&) {}), "");
+  EXPECT_NE(refused([](Scene& s) {
+              s.look.face->correlation_px = 0.2;
+            }).find("look.face.correlation_px"),
+            std::string::npos);
+  EXPECT_NE(refused([](Scene& s) {
+              s.look.face->amplitude = 0.0;
+            }).find("look.face.amplitude"),
+            std::string::npos);
+  EXPECT_NE(refused([](Scene& s) {
+              s.camera.lens = calib::Lens{900.0, 900.0, 32.0, 30.0, -0.01,
+                                          0.0,   0.0,   0.0,  0.0};
+            }).find("absent where there is a lens"),
+            std::string::npos);
 }
 
 }  // namespace
