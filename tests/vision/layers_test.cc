@@ -446,7 +446,7 @@ TEST(FitLayers, ATexturedFace) {
       FitLayers(stack, scene.shape, Shaken(scene.poses, 0.3),
                 Paint(scene, nullptr), scene.noise_dn, options);
   EXPECT_FALSE(fit.layers.flat);
-  EXPECT_GT(fit.layers.texture_dn, 5.0);
+  EXPECT_GT(fit.layers.texture.deviation_dn, 5.0);
   const Errors errors = ErrorsOf(scene, stack, fit, true);
   // A texture hides where the outline lies: a tenth of a pixel at most.
   EXPECT_LT(errors.worst_px, 0.12);

@@ -29,17 +29,18 @@ LayeredScene TexturedBlock() {
   return scene;
 }
 
-// The normal equations of that scene, from poses a tenth of a pixel off.
+// The normal equations of that scene, from poses that are off.
 struct Equations {
   LayeredScene scene = TexturedBlock();
-  PictureStack stack = Film(scene, 31);
+  PictureStack stack;
   Layers layers;
   std::vector<FrameSamples> frames;
   std::vector<LayerPose> poses = scene.poses;
   StillEvidence evidence;
   JointStepOptions options;
 
-  Equations() {
+  explicit Equations(unsigned seed = 31, double off_px = 0.1)
+      : stack(Film(scene, seed)) {
     layers.shape = scene.shape;
     layers.blur = 1.0;
     layers.flat = false;
@@ -54,8 +55,8 @@ struct Equations {
     }
     layers.grid.TransformLevels(layers.picture.data());
     layers.noise_dn = 1.0;
-    layers.texture_dn = 20.0;
-    for (LayerPose& pose : poses) pose.x += 0.1;
+    layers.texture.deviation_dn = 20.0;
+    for (LayerPose& pose : poses) pose.x += off_px;
     const std::vector<LayerPose> motions = EstimateMotions(poses, stack.frames);
     for (std::size_t t = 0; t < poses.size(); ++t) {
       Linearize(stack, t, layers, poses[t], motions[t], Derivatives::kAll,
@@ -117,6 +118,48 @@ TEST(JointStep, IsTheSameWithACoarseSpaceInFewerProducts) {
     EXPECT_NEAR(step.poses[t].y, exact.poses[t].y, 2e-3) << t;
   }
   EXPECT_NEAR(step.shared[kBlur], exact.shared[kBlur], 2e-3);
+}
+
+// Against the scatter of the common place over frames of other noise: the step
+// from the truth. A texture hides it, so it is far above what scatter of the
+// poses would leave of a mean.
+TEST(JointStep, CommonPoseIsAsUncertainAsItScatters) {
+  constexpr int kDraws = 24;
+  double square_x = 0.0;
+  double square_y = 0.0;
+  double square_angle = 0.0;
+  CommonPose stated;
+  for (int draw = 0; draw < kDraws; ++draw) {
+    const Equations at(100U + static_cast<unsigned>(draw), 0.0);
+    const CoarseSpace coarse = FindCoarseSpace(
+        at.layers, at.frames, at.evidence, at.poses, at.options);
+    JointStepOptions options = at.options;
+    options.tolerance = 1e-3;
+    stated = MeasureCommonPose(at.layers, at.frames, at.evidence, coarse,
+                               at.poses, options);
+    const JointStep step =
+        SolveJointStep(at.layers, at.frames, at.evidence, coarse, options);
+    const double angle = at.poses[0].angle_rad;  // of all
+    double x = 0.0;
+    double y = 0.0;
+    double turn = 0.0;
+    for (const LayerPose& pose : step.poses) {
+      const auto n = static_cast<double>(step.poses.size());
+      x += (pose.x * std::cos(angle) + pose.y * std::sin(angle)) / n;
+      y += (pose.y * std::cos(angle) - pose.x * std::sin(angle)) / n;
+      turn += pose.angle_rad / n;
+    }
+    square_x += x * x / kDraws;
+    square_y += y * y / kDraws;
+    square_angle += turn * turn / kDraws;
+  }
+  // The prior's part of u is not drawn here: at most as large. 24 draws leave
+  // a seventh.
+  EXPECT_LT(std::sqrt(square_x), 1.4 * stated.u_x_px);
+  EXPECT_LT(std::sqrt(square_y), 1.4 * stated.u_y_px);
+  EXPECT_LT(std::sqrt(square_angle), 1.4 * stated.u_angle_rad);
+  EXPECT_GT(std::sqrt(square_x), 0.2 * stated.u_x_px);
+  EXPECT_GT(std::sqrt(square_y), 0.2 * stated.u_y_px);
 }
 
 }  // namespace

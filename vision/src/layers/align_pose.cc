@@ -25,7 +25,8 @@ void WeighByLayers(const Layers& layers, const LayerPose& motion,
   const auto edge = static_cast<float>(4.0 * layers.blur);  // its width, px
   const auto v_x = static_cast<float>(motion.x);
   const auto v_y = static_cast<float>(motion.y);
-  const double texture2 = layers.texture_dn * layers.texture_dn;
+  const double texture2 =
+      layers.texture.deviation_dn * layers.texture.deviation_dn;
   const auto prior = static_cast<float>(layers.noise_dn * layers.noise_dn /
                                         std::max(texture2, 1e-12));
   for (std::size_t i = 0; i < samples.size(); ++i) {

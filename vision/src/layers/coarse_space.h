@@ -5,7 +5,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/SparseCholesky>
 #include <cstddef>
+#include <memory>
 #include <vector>
 
 #include "layers/unknowns.h"
@@ -16,13 +18,17 @@ namespace touchdown::vision::layers {
 // turn.
 inline constexpr std::size_t kDirections = kQuadratic + kPose;
 
+// T's own block of the normal equations, factored.
+using PictureFactor = Eigen::SimplicialLLT<Eigen::SparseMatrix<float>>;
+
 // W of a T that is a spline: each direction with the T that costs least of what
 // pixels say. It holds for other poses and pictures of the same clip: one from
 // the begin of a fit takes up to a third more products than one of each step.
 struct CoarseSpace {
   // Of the poses' directions, by frame: columns.
   std::vector<Eigen::Matrix3d> axes;
-  Eigen::MatrixXf picture;    // T's part: cells x directions
+  Eigen::MatrixXf picture;  // T's part: cells x directions
+  std::shared_ptr<const PictureFactor> factor;
   Eigen::MatrixXd stiffness;  // W' A W without what is known beforehand
 
   bool empty() const { return axes.empty(); }

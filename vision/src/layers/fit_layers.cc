@@ -117,11 +117,6 @@ double MeanLevel(const PictureStack& stack, const Layers& layers,
 // A body is flat until its pictures say that it is not.
 constexpr double kFirstTexture = 0.3;
 constexpr int kFlatSteps = 2;  // by then a flat body is told
-// Where conjugate gradients end: earlier while poses still move. Half of it and
-// a third take 1.25 times the products in 91 fits of photographed faces, and
-// save three steps in a hundred.
-constexpr double kRough = 0.1;
-constexpr double kFine = 0.015;
 // By then the step of one shared parameter is within a hundredth: the coarse
 // space (coarse_space.h) has told it.
 constexpr double kMeasured = 0.05;
@@ -137,7 +132,7 @@ void Judge(const PictureStack& stack, const FitLayersOptions& options, int step,
   layers.noise_dn =
       MeasureNoise(frames, step == 0 ? kAnything : layers.noise_dn);
   if (step == 0) {
-    layers.texture_dn = kFirstTexture * layers.noise_dn;
+    layers.texture.deviation_dn = kFirstTexture * layers.noise_dn;
     Reweigh(layers.noise_dn, frames);
   } else if (layers.flat) {
     const double texture =
@@ -146,12 +141,12 @@ void Judge(const PictureStack& stack, const FitLayersOptions& options, int step,
     constexpr double kMatters = 0.5;  // of the noise
     if (step >= kFlatSteps && texture > kMatters * layers.noise_dn) {
       LearnTexture(layers);
-      layers.texture_dn = texture;
+      layers.texture.deviation_dn = texture;
       LinearizeAll(stack, layers, clear, fit.poses, options, frames);
     }
   } else {
     layers.picture_weight = WeighPicture(layers, frames);
-    layers.texture_dn = MeasureTexture(layers, layers.picture_weight);
+    layers.texture = MeasureTexture(layers, layers.picture_weight);
   }
 }
 
@@ -305,8 +300,7 @@ LayerFit Settle(const PictureStack& stack, int first_step,
     LinearizeAll(stack, layers, evidence.weight, fit.poses, options, frames);
     const bool textured = step > 0 && !layers.flat;
     Judge(stack, options, step, evidence.weight, fit, frames);
-    const bool fine = moved_px < 2.0 * kStill_px;
-    solve.tolerance = fine ? kFine : kRough;
+    solve.tolerance = options.tolerance;
     // A disc's angles hang on its picture alone, which is learned first.
     solve.turns = options.turns && (!layers.shape.disc || step >= kFlatSteps);
     evidence = WeighStill(stack, layers, frames, options.threads);
@@ -315,14 +309,14 @@ LayerFit Settle(const PictureStack& stack, int first_step,
     }
     moved_px = Advance(SolveJointStep(layers, frames, evidence, coarse, solve),
                        options, fit);
-    fit.converged = fine && moved_px < kStill_px && step > kFlatSteps;
+    fit.converged = moved_px < kStill_px && step > kFlatSteps;
   }
   LinearizeAll(stack, layers, evidence.weight, fit.poses, options, frames);
   fit.loss = MeanLoss(frames, options);
   layers.noise_dn = MeasureNoise(frames, layers.noise_dn);
   if (!layers.flat) {
     layers.picture_weight = WeighPicture(layers, frames);
-    layers.texture_dn = MeasureTexture(layers, layers.picture_weight);
+    layers.texture = MeasureTexture(layers, layers.picture_weight);
   }
   evidence = WeighStill(stack, layers, frames, options.threads);
   layers.still_weight = evidence.weight;
@@ -331,6 +325,14 @@ LayerFit Settle(const PictureStack& stack, int first_step,
       layers.still_weight[static_cast<std::size_t>(samples.pixel[i])] +=
           samples.weight[i] * samples.open[i] * samples.open[i];
     }
+  }
+  if (!layers.flat) {
+    // The variances are then a few hundredths too small.
+    constexpr double kRoughly = 0.2;
+    solve.turns = options.turns;
+    solve.tolerance = kRoughly;
+    fit.common =
+        MeasureCommonPose(layers, frames, evidence, coarse, fit.poses, solve);
   }
   if (options.textured && options.prior.u[kLong] == 0.0) {
     fit.beyond_px =

@@ -24,6 +24,9 @@ struct FitLayersOptions {
   // And so many more as long as a pose moves by a third of a pixel: it is not
   // where it belongs yet, and what it shows there spoils T.
   int steps_astray = 0;
+  // Where conjugate gradients end (joint_step.h). With 0.1 outlines lie up to
+  // 0.03 px beside strong textures: what pixels tell little of comes last.
+  double tolerance = 0.02;
   int threads = 0;
   // Straight edges of the whole still picture, in the stack's coordinates.
   std::vector<StillLine> lines;
@@ -40,6 +43,7 @@ struct LayerFit {
   Layers layers;
   std::vector<LayerPose> poses;  // of each picture of the stack
   bool converged = false;
+  CommonPose common;  // of a textured body
   double loss = 0.0;  // mean over the pixels that show something of the body
   // px by which outlines lie beside sizes that are held before a texture; 0 of
   // others. What moves outlines, as a camera's gamma does, moves all edges of a

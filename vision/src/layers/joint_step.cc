@@ -1,6 +1,9 @@
 #include "layers/joint_step.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstddef>
 #include <utility>
 
@@ -19,6 +22,71 @@ CoarseSpace FindCoarseSpace(const Layers& layers,
   return equations.FindCoarseSpace(poses);
 }
 
+namespace {
+
+// x of A x = b by conjugate gradients; `residual` is b, and what is left of it.
+// How many products it took.
+int SolveEquations(NormalEquations& equations, const JointStepOptions& options,
+                   double noise_dn, Unknowns& residual, Unknowns& x) {
+  Unknowns scaled = x;
+  equations.Precondition(residual, scaled);
+  Unknowns direction = scaled;
+  Unknowns product = x;
+  double power = residual.Dot(scaled);
+  const double goal = std::max(power * options.tolerance * options.tolerance,
+                               options.least_chi2 * noise_dn * noise_dn);
+  int products = 0;
+  while (products < options.most_products && power > goal) {
+    equations.Multiply(direction, product);
+    ++products;
+    const double along = direction.Dot(product);
+    if (!(along > 0.0)) break;
+    const double length = power / along;
+    x.Add(length, direction);
+    residual.Add(-length, product);
+    equations.Precondition(residual, scaled);
+    const double next = residual.Dot(scaled);
+    direction.TurnTo(scaled, next / power);
+    power = next;
+  }
+  return products;
+}
+
+}  // namespace
+
+CommonPose MeasureCommonPose(const Layers& layers,
+                             const std::vector<FrameSamples>& frames,
+                             const StillEvidence& evidence,
+                             const CoarseSpace& coarse,
+                             const std::vector<LayerPose>& poses,
+                             const JointStepOptions& options) {
+  NormalEquations equations(layers, frames, evidence, options.prior,
+                            options.turns, coarse, options.threads);
+  Unknowns unused = equations.Zero();
+  equations.Fill(unused);
+  JointStepOptions solve = options;
+  solve.least_chi2 = 0.0;
+  std::array<double, kPose> u{};
+  for (std::size_t k = 0; k < (options.turns ? kPose : kPose - 1); ++k) {
+    Unknowns mean = equations.Zero();
+    for (std::size_t t = 0; t < poses.size(); ++t) {
+      const Eigen::Matrix3d axes =
+          Eigen::AngleAxisd(poses[t].angle_rad, Eigen::Vector3d::UnitZ())
+              .toRotationMatrix();
+      for (std::size_t a = 0; a < kPose; ++a) {
+        mean.poses[kPose * t + a] =
+            axes(static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(k)) /
+            static_cast<double>(poses.size());
+      }
+    }
+    Unknowns residual = mean;
+    Unknowns solution = equations.Zero();
+    SolveEquations(equations, solve, layers.noise_dn, residual, solution);
+    u[k] = layers.noise_dn * std::sqrt(std::max(0.0, mean.Dot(solution)));
+  }
+  return {u[0], u[1], u[2]};
+}
+
 JointStep SolveJointStep(const Layers& layers,
                          const std::vector<FrameSamples>& frames,
                          const StillEvidence& evidence,
@@ -29,28 +97,9 @@ JointStep SolveJointStep(const Layers& layers,
   Unknowns residual = equations.Zero();
   equations.Fill(residual);
   Unknowns step = equations.Zero();
-  Unknowns scaled = step;
-  equations.Precondition(residual, scaled);
-  Unknowns direction = scaled;
-  Unknowns product = step;
-  double power = residual.Dot(scaled);
-  const double goal =
-      std::max(power * options.tolerance * options.tolerance,
-               options.least_chi2 * layers.noise_dn * layers.noise_dn);
   JointStep out;
-  while (out.products < options.most_products && power > goal) {
-    equations.Multiply(direction, product);
-    ++out.products;
-    const double along = direction.Dot(product);
-    if (!(along > 0.0)) break;
-    const double length = power / along;
-    step.Add(length, direction);
-    residual.Add(-length, product);
-    equations.Precondition(residual, scaled);
-    const double next = residual.Dot(scaled);
-    direction.TurnTo(scaled, next / power);
-    power = next;
-  }
+  out.products =
+      SolveEquations(equations, options, layers.noise_dn, residual, step);
   for (std::size_t t = 0; t < frames.size(); ++t) {
     out.poses.push_back({step.poses[kPose * t], step.poses[kPose * t + 1],
                          step.poses[kPose * t + 2]});

@@ -46,6 +46,17 @@ inline constexpr std::size_t kPose = 3;     // x, y, angle
 inline constexpr std::size_t kTerms = 6;    // of a quadratic: 1 x y xx xy yy
 inline constexpr std::size_t kShared = 13;  // what the frames share, see below
 
+// What T has beside a quadratic, as a Gaussian Markov random field of Matern's
+// class on the grid of T's coefficients (F. Lindgren, H. Rue and J. Lindstrom,
+// J. R. Stat. Soc. B 73(4), 2011, alpha = 2): with the Laplacian L of the grid
+// its precision is
+//   Q = (kappa^2 + L)^2 / tau^2,
+// its autocorrelation kappa d K_1(kappa d) at d px; white where kappa is large.
+struct Texture {
+  double deviation_dn = 0.0;  // standard deviation, which tau follows from
+  double rate = 1.0;          // kappa, per px
+};
+
 // What all frames have in common.
 struct Layers {
   Shape shape;
@@ -70,8 +81,8 @@ struct Layers {
   // B's edges, as each pixel sees them (still_edges.h); empty: none.
   std::vector<StillEdge> edges;
 
-  double noise_dn = 2.0;    // of a pixel
-  double texture_dn = 0.0;  // standard deviation of T about a quadratic
+  double noise_dn = 2.0;  // of a pixel
+  Texture texture;
 };
 
 // Of a frame interval. At 5 px a frame it blurs by 0.07 px, which no picture

@@ -109,10 +109,6 @@ void VisitNodes(const FrameSamples& samples, const Visit& visit) {
   }
 }
 
-// What the finest pattern of a spline's coefficients is of them in its levels,
-// in both directions: (4 - 1 - 1) / 6 each.
-constexpr float kFinest = 1.0F / 9.0F;
-
 }  // namespace
 
 ShownPixels::ShownPixels(const std::vector<FrameSamples>& frames,
@@ -149,14 +145,20 @@ NormalEquations::NormalEquations(const Layers& layers,
       turns_(turns),
       threads_(threads),
       shown_(frames, layers.still.size()),
-      free_(layers.flat ? FreePart() : FreePart(layers.grid)),
       cells_(CountCells(layers)),
       columns_(layers.flat ? kShared : std::size_t{kQuadratic}),
       parts_(kParts, Unknowns(0, cells_, shown_.size())),
       outside_(cells_) {
   const double variance = layers.noise_dn * layers.noise_dn;
-  const double texture = std::max(layers.texture_dn, 1e-2 * layers.noise_dn);
-  stiffness_ = static_cast<float>(variance / (texture * texture));
+  variance_ = static_cast<float>(variance);
+  if (!layers.flat) {
+    // Less is as good as none, and no precision is endless.
+    constexpr double kLeastTexture = 1e-2;  // of the noise
+    Texture texture = layers.texture;
+    texture.deviation_dn =
+        std::max(texture.deviation_dn, kLeastTexture * layers.noise_dn);
+    picture_prior_ = PicturePrior(layers.grid, texture);
+  }
   for (std::size_t i = 0; i < kShared; ++i) {
     const double u = prior.u[i];
     prior_[i] = u > 0.0 && i < columns_ ? variance / (u * u) : kHeld;
@@ -279,20 +281,16 @@ void NormalEquations::Fill(Unknowns& right) {
       right.shared[a] -= prior_[a] * (now[a] - known_.value[a]);
     }
   }
-  picture_inverse_.assign(cells_, 0.0F);
-  picture_finest_.assign(cells_, 0.0F);
   if (cells_ > 0) {
-    free_.RemoveComponent(layers_.picture.data(), outside_.data());
-  }
-  for (std::size_t c = 0; c < cells_; ++c) {
-    float sum = 0.0F;
-    for (const auto& part : picture) sum += part[c];
-    right.picture[c] -= stiffness_ * outside_[c];
-    const float held = stiffness_ + kLeastCell;
-    picture_inverse_[c] = 1.0F / (sum + held);
-    picture_finest_[c] =
-        (std::sqrt((sum + held) / (kFinest * kFinest * sum + held)) - 1.0F) /
-        (1.0F / kFinest - 1.0F);
+    picture_prior_.Multiply(layers_.picture.data(), outside_.data());
+    for (std::size_t c = 0; c < cells_; ++c) {
+      right.picture[c] -= variance_ * outside_[c];
+    }
+    for (std::size_t part = 1; part < kParts; ++part) {
+      AsVector(picture[0]) += AsVector(picture[part]);
+    }
+    picture_factor_ =
+        coarse_.empty() ? FactorPicture(picture[0]) : coarse_.factor;
   }
   still_inverse_.assign(shown_.size(), 0.0F);
   for (std::size_t i = 0; i < shown_.size(); ++i) {
@@ -347,9 +345,9 @@ void NormalEquations::Multiply(const Unknowns& in, Unknowns& out) {
   for (std::size_t a = 0; a < kShared; ++a) {
     out.shared[a] += (prior_[a] + kLeast) * in.shared[a];
   }
-  if (cells_ > 0) free_.RemoveComponent(in.picture.data(), outside_.data());
+  if (cells_ > 0) picture_prior_.Multiply(in.picture.data(), outside_.data());
   for (std::size_t c = 0; c < cells_; ++c) {
-    out.picture[c] += stiffness_ * outside_[c] + kLeastCell * in.picture[c];
+    out.picture[c] += variance_ * outside_[c] + kLeastCell * in.picture[c];
   }
   for (std::size_t i = 0; i < shown_.size(); ++i) {
     out.still[i] +=
@@ -357,26 +355,44 @@ void NormalEquations::Multiply(const Unknowns& in, Unknowns& out) {
   }
 }
 
-// Coefficients of a spline whose knots lie a pixel apart are told very
-// unequally by levels: a pattern that changes its sign from knot to knot is a
-// ninth of its coefficients. So where pixels tell T, its levels are what is
-// scaled by their weights (d each); where only the prior does (h each), its
-// coefficients are. With the direct transform F, and shares f between the two
-// that are right for the finest and for the coarsest pattern:
-//   M^-1 = G' D^-1 G,  G = f F + (1 - f),  D = d + h
-void NormalEquations::PreconditionPicture(const float* in, float* out) {
-  if (cells_ == 0) return;
-  std::copy_n(in, cells_, out);
-  layers_.grid.TransformLevels(out);
-  for (std::size_t c = 0; c < cells_; ++c) {
-    const float f = picture_finest_[c];
-    const float scaled =
-        picture_inverse_[c] * (f * out[c] + (1.0F - f) * in[c]);
-    out[c] = f * scaled;
-    outside_[c] = (1.0F - f) * scaled;
+// T's own block, as if each sample lay on a knot: with the levels F of a
+// spline's coefficients at the knots, what pixels tell of each level (`weight`)
+// and the prior's Q,
+//   F' diag(weight) F + s^2 Q.
+std::shared_ptr<const PictureFactor> NormalEquations::FactorPicture(
+    const std::vector<float>& weight) const {
+  const auto cells = static_cast<Eigen::Index>(cells_);
+  const std::int32_t columns = layers_.grid.columns();
+  const std::int32_t rows = layers_.grid.rows();
+  const FourFloats share = SplineWeights(0.0F);  // of three neighbours
+  std::vector<Eigen::Triplet<float>> levels;
+  for (std::int32_t j = 0; j < rows; ++j) {
+    for (std::int32_t i = 0; i < columns; ++i) {
+      for (std::int32_t dj = -1; dj <= 1; ++dj) {
+        for (std::int32_t di = -1; di <= 1; ++di) {
+          if (i + di < 0 || i + di >= columns || j + dj < 0 || j + dj >= rows) {
+            continue;
+          }
+          levels.emplace_back(j * columns + i, (j + dj) * columns + i + di,
+                              share[di + 1] * share[dj + 1]);
+        }
+      }
+    }
   }
-  layers_.grid.TransformLevels(out);
-  for (std::size_t c = 0; c < cells_; ++c) out[c] += outside_[c];
+  Eigen::SparseMatrix<float> seen(cells, cells);
+  seen.setFromTriplets(levels.begin(), levels.end());
+  Eigen::SparseMatrix<float> block =
+      seen.transpose() * AsVector(weight).asDiagonal() * seen;
+  block += variance_ * picture_prior_.MakePrecision();
+  for (Eigen::Index c = 0; c < cells; ++c) block.coeffRef(c, c) += kLeastCell;
+  return std::make_shared<const PictureFactor>(block);
+}
+
+void NormalEquations::PreconditionPicture(const float* in, float* out) const {
+  if (cells_ == 0) return;
+  const auto cells = static_cast<Eigen::Index>(cells_);
+  Eigen::Map<Eigen::VectorXf>(out, cells) =
+      picture_factor_->solve(Eigen::Map<const Eigen::VectorXf>(in, cells));
 }
 
 void NormalEquations::Precondition(const Unknowns& in, Unknowns& out) {
@@ -420,6 +436,7 @@ void NormalEquations::InvertCoarse(const SharedMatrix& shared) {
 CoarseSpace NormalEquations::FindCoarseSpace(
     const std::vector<LayerPose>& poses) {
   CoarseSpace coarse;
+  coarse.factor = picture_factor_;
   for (const LayerPose& pose : poses) {
     Eigen::Matrix3d& axes = coarse.axes.emplace_back();
     axes = Eigen::AngleAxisd(pose.angle_rad, Eigen::Vector3d::UnitZ());
@@ -469,9 +486,10 @@ CoarseSpace NormalEquations::FindCoarseSpace(
   for (const Eigen::MatrixXd& sum : stiffness) coarse.stiffness += sum;
   Eigen::MatrixXf outside(cells, kDirections);
   for (Eigen::Index d = 0; d < outside.cols(); ++d) {
-    free_.RemoveComponent(coarse.picture.col(d).data(), outside.col(d).data());
+    picture_prior_.Multiply(coarse.picture.col(d).data(),
+                            outside.col(d).data());
   }
-  outside = stiffness_ * outside + kLeastCell * coarse.picture;
+  outside = variance_ * outside + kLeastCell * coarse.picture;
   coarse.stiffness += (outside.transpose() * coarse.picture).cast<double>();
   return coarse;
 }

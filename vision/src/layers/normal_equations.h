@@ -7,7 +7,7 @@
 // 24(2), 1987; additive, as in A. Toselli and O. Widlund, Domain Decomposition
 // Methods, 2005, section 2.2):
 //   M^-1 = blocks^-1 + W (W' A W)^-1 W'
-// The blocks are those of each pose, T's levels and the diagonal of B. The
+// The blocks are those of each pose, T and the diagonal of B. The
 // directions W are those that pixels tell little of, for T can follow them: a
 // slope of the light, or a common shift of all poses.
 #pragma once
@@ -16,6 +16,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "layers/coarse_space.h"
@@ -73,7 +74,9 @@ class NormalEquations {
     return static_cast<std::size_t>(&sums - parts_.data());
   }
   void Collect(Unknowns& out);
-  void PreconditionPicture(const float* in, float* out);
+  std::shared_ptr<const PictureFactor> FactorPicture(
+      const std::vector<float>& weight) const;
+  void PreconditionPicture(const float* in, float* out) const;
   void AddCoarse(const Unknowns& in, Unknowns& out);
   void InvertCoarse(const SharedMatrix& shared);
 
@@ -85,19 +88,18 @@ class NormalEquations {
   bool turns_;
   int threads_;
   ShownPixels shown_;
-  FreePart free_;                // of a T that is a spline
+  PicturePrior picture_prior_;   // of a T that is a spline
   std::size_t cells_;            // unknown coefficients of T
   std::size_t columns_;          // of the shared parameters that are not held
   std::vector<Unknowns> parts_;  // each part's sums of what frames share
   std::vector<float> outside_;
-  float stiffness_ = 0.0F;
+  float variance_ = 0.0F;  // of a pixel
   std::array<double, kShared> prior_{};
 
   // The preconditioner.
   std::vector<Eigen::Matrix3d> pose_inverse_;
   Eigen::MatrixXd coarse_inverse_;
-  std::vector<float> picture_inverse_;
-  std::vector<float> picture_finest_;  // see PreconditionPicture
+  std::shared_ptr<const PictureFactor> picture_factor_;
   std::vector<float> still_inverse_;
 };
 

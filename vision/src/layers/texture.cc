@@ -1,34 +1,106 @@
 #include "layers/texture.h"
 
 #include <Eigen/Dense>
+#include <Eigen/SparseCore>
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
+#include <numbers>
 #include <utility>
 
 namespace touchdown::vision::layers {
 
-FreePart::FreePart(const PictureGrid& grid) {
+namespace {
+
+// Over the lag `lag_px` along a row: the mean of cos(lag k) / (rate^2 +
+// lambda)^2 over all waves k of the grid, lambda being the Laplacian's value.
+double CovarianceOfUnit(double rate, double lag_px) {
+  constexpr int kWaves = 32;  // along each axis, of 0 to pi
+  double sum = 0.0;
+  for (int j = 0; j < kWaves; ++j) {
+    for (int i = 0; i < kWaves; ++i) {
+      const double kx = std::numbers::pi * (i + 0.5) / kWaves;
+      const double ky = std::numbers::pi * (j + 0.5) / kWaves;
+      const double stiff =
+          rate * rate + 4.0 - 2.0 * std::cos(kx) - 2.0 * std::cos(ky);
+      sum += std::cos(lag_px * kx) / (stiff * stiff);
+    }
+  }
+  return sum / (kWaves * kWaves);
+}
+
+// Between textures that are smooth over 10 px, which the waves above tell
+// apart, and white ones.
+constexpr double kLeastRate = 0.1;
+constexpr double kMostRate = 10.0;
+
+// The rate at which the autocorrelation over `lag_px` is `correlation`.
+double RateOf(double correlation, double lag_px) {
+  double low = std::log(kLeastRate);
+  double high = std::log(kMostRate);
+  constexpr int kHalvings = 12;  // to 0.1 % of the rate
+  for (int i = 0; i < kHalvings; ++i) {
+    const double middle = 0.5 * (low + high);
+    const double rate = std::exp(middle);
+    const double there = CovarianceOfUnit(rate, lag_px) / UnitVariance(rate);
+    (there > correlation ? low : high) = middle;
+  }
+  return std::exp(0.5 * (low + high));
+}
+
+}  // namespace
+
+double UnitVariance(double rate) { return CovarianceOfUnit(rate, 0.0); }
+
+PicturePrior::PicturePrior(const PictureGrid& grid, const Texture& texture)
+    : slopes_(static_cast<Eigen::Index>(grid.size()),
+              static_cast<Eigen::Index>(grid.size())),
+      precision_(
+          static_cast<float>(UnitVariance(texture.rate) /
+                             (texture.deviation_dn * texture.deviation_dn))) {
   const double half_x = 0.5 * grid.columns();
   const double half_y = 0.5 * grid.rows();
   Eigen::MatrixXd terms(grid.size(), kTerms);
+  std::vector<Eigen::Triplet<float>> slopes;
+  const auto join = [&](Eigen::Index a, Eigen::Index b) {
+    slopes.emplace_back(a, a, 1.0F);
+    slopes.emplace_back(b, b, 1.0F);
+    slopes.emplace_back(a, b, -1.0F);
+    slopes.emplace_back(b, a, -1.0F);
+  };
   Eigen::Index cell = 0;
   for (std::int32_t j = 0; j < grid.rows(); ++j) {
-    for (std::int32_t i = 0; i < grid.columns(); ++i) {
+    for (std::int32_t i = 0; i < grid.columns(); ++i, ++cell) {
       const double x = static_cast<double>(grid.x_of(i)) / half_x;
       const double y = static_cast<double>(grid.y_of(j)) / half_y;
-      terms.row(cell++) << 1.0, x, y, x * x, x * y, y * y;
+      terms.row(cell) << 1.0, x, y, x * x, x * y, y * y;
+      slopes.emplace_back(cell, cell,
+                          static_cast<float>(texture.rate * texture.rate));
+      if (i > 0) join(cell, cell - 1);
+      if (j > 0) join(cell, cell - grid.columns());
     }
   }
+  slopes_.setFromTriplets(slopes.begin(), slopes.end());
   basis_ = terms.householderQr().householderQ() *
            Eigen::MatrixXd::Identity(terms.rows(), terms.cols());
 }
 
-void FreePart::RemoveComponent(const float* from, float* to) const {
-  const Eigen::VectorXd x =
-      Eigen::Map<const Eigen::VectorXf>(from, basis_.rows()).cast<double>();
-  Eigen::Map<Eigen::VectorXf>(to, basis_.rows()) =
-      (x - basis_ * (basis_.transpose() * x)).cast<float>();
+void PicturePrior::RemoveQuadratic(Eigen::VectorXf& x) const {
+  const Eigen::VectorXd all = x.cast<double>();
+  x = (all - basis_ * (basis_.transpose() * all)).cast<float>();
+}
+
+void PicturePrior::Multiply(const float* from, float* to) const {
+  Eigen::VectorXf x = Eigen::Map<const Eigen::VectorXf>(from, basis_.rows());
+  RemoveQuadratic(x);
+  x = precision_ * (slopes_ * (slopes_ * x).eval());
+  RemoveQuadratic(x);
+  Eigen::Map<Eigen::VectorXf>(to, basis_.rows()) = x;
+}
+
+Eigen::SparseMatrix<float> PicturePrior::MakePrecision() const {
+  return precision_ * Eigen::SparseMatrix<float>(slopes_ * slopes_);
 }
 
 // Standard deviation of what a flat body's residuals have in common, cell by
@@ -88,24 +160,19 @@ std::vector<float> WeighPicture(const Layers& layers,
   return weight;
 }
 
-// Empirical Bayes: the variance of T about its own quadratic, over the cells
-// inside of the blurred edge, where T is not to be mistaken for the outline's
-// place.
-double MeasureTexture(const Layers& layers, const std::vector<float>& weight) {
+Texture MeasureTexture(const Layers& layers, const std::vector<float>& weight) {
   // Inside of the half sides: nearer, an error of the outline looks like
   // texture.
   constexpr double kBlurs = 1.5;
   constexpr double kLeastHalf = 0.3;  // of a thin body's half side
-  using TermVector = Eigen::Matrix<double, 6, 1>;
   const Shape& shape = layers.shape;
   const auto inner = [&](double half) {
     return std::max(half - kBlurs * layers.blur, kLeastHalf * half);
   };
   const double half_x = inner(shape.half_long);
   const double half_y = inner(shape.half_short);
-  std::vector<std::pair<std::size_t, TermVector>> inside;
-  Eigen::Matrix<double, 6, 6> normal = Eigen::Matrix<double, 6, 6>::Zero();
-  TermVector right = TermVector::Zero();
+  std::vector<std::size_t> inside;
+  double level = 0.0;
   for (std::size_t c = 0; c < weight.size(); ++c) {
     const auto cell = static_cast<std::int32_t>(c);
     const double x =
@@ -118,28 +185,50 @@ double MeasureTexture(const Layers& layers, const std::vector<float>& weight) {
                                ? std::hypot(x, y) <= 1.0
                                : std::abs(x) <= 1.0 && std::abs(y) <= 1.0;
     if (!is_inside) continue;
-    TermVector terms;
-    terms << 1.0, x, y, x * x, x * y, y * y;
-    normal += terms * terms.transpose();
-    right += static_cast<double>(layers.picture[c]) * terms;
-    inside.emplace_back(c, terms);
+    level += static_cast<double>(layers.picture[c]);
+    inside.push_back(c);
   }
-  // Twice the six numbers of the quadratic: fewer leave no scatter to measure.
+  // Fewer leave no scatter to measure.
   constexpr std::size_t kLeastCells = 12;
-  if (inside.size() < kLeastCells) return layers.texture_dn;
-  normal.diagonal().array() += 1e-6;
-  const TermVector quadratic = normal.ldlt().solve(right);
-  const double variance = layers.noise_dn * layers.noise_dn;
-  const double texture2 = layers.texture_dn * layers.texture_dn;
-  double sum = 0.0;
-  for (const auto& [c, terms] : inside) {
-    const double off =
-        static_cast<double>(layers.picture[c]) - quadratic.dot(terms);
-    // The posterior's own variance is added: expectation maximisation.
-    sum += off * off + 1.0 / (static_cast<double>(weight[c]) / variance +
-                              1.0 / std::max(texture2, 1e-12));
+  if (inside.size() < kLeastCells) {
+    return layers.texture;
   }
-  return std::sqrt(sum / static_cast<double>(inside.size()));
+  level /= static_cast<double>(inside.size());
+  const double variance = layers.noise_dn * layers.noise_dn;
+  const double texture2 =
+      layers.texture.deviation_dn * layers.texture.deviation_dn;
+  // The posterior's own variance is added: expectation maximisation.
+  const auto own = [&](std::size_t c) {
+    return 1.0 / (static_cast<double>(weight[c]) / variance +
+                  1.0 / std::max(texture2, 1e-12));
+  };
+  std::vector<double> off(weight.size(),
+                          std::numeric_limits<double>::quiet_NaN());
+  double sum = 0.0;
+  for (const std::size_t c : inside) {
+    off[c] = static_cast<double>(layers.picture[c]) - level;
+    sum += off[c] * off[c] + own(c);
+  }
+  constexpr std::int32_t kLag_px = 2;
+  double apart = 0.0;
+  double pairs = 0.0;
+  const auto add = [&](std::size_t a, std::size_t b) {
+    const double difference = off[a] - off[b];
+    if (std::isnan(difference)) return;
+    apart += difference * difference + own(a) + own(b);
+    pairs += 1.0;
+  };
+  const auto columns = static_cast<std::size_t>(layers.grid.columns());
+  for (const std::size_t c : inside) {
+    if (c % columns + kLag_px < columns) add(c, c + kLag_px);
+    if (c + kLag_px * columns < off.size()) add(c, c + kLag_px * columns);
+  }
+  const double mean = sum / static_cast<double>(inside.size());
+  Texture texture{std::sqrt(mean), layers.texture.rate};
+  if (pairs > 0.0) {
+    texture.rate = RateOf(1.0 - 0.5 * apart / pairs / mean, kLag_px);
+  }
+  return texture;
 }
 
 }  // namespace touchdown::vision::layers

@@ -68,7 +68,7 @@ LayerFit StartInLight(const LayerFit& fit, const LightScale& was,
   for (std::size_t k = 1; k < layers::kTerms; ++k) layers.quadratic[k] *= slope;
   layers.slope_x *= slope;
   layers.slope_y *= slope;
-  layers.texture_dn *= slope;
+  layers.texture.deviation_dn *= slope;
   return start;
 }
 

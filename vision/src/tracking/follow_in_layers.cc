@@ -54,11 +54,6 @@ std::size_t CountPictures(const Shape& shape, std::size_t least,
 // a change of size.
 constexpr double kMostGrowth = 0.02;
 
-// Standard uncertainty of the outline's place against a texture, in units of
-// blur times the texture's share of the contrast: two clips with photographed
-// faces were off by 0.3 and 0.5.
-constexpr double kCommonShare = 0.4;
-
 // What edges that are not blurred quite as Gauss's do to all poses of a clip
 // together. The errors of 198 face angles of known truth in raw clips are most
 // likely with 0.001; without it the median |error| / u is 0.73 and 0.924 lie
@@ -133,6 +128,7 @@ FitLayersOptions HalvedOptions(const FitLayersOptions& options) {
   FitLayersOptions half = options;
   constexpr double kHalvingsBlur = 0.3;  // of two pixels taken as one
   half.prior.u[layers::kCurve] = 0.0;    // of no use yet
+  half.tolerance = 0.1;                  // only where to begin is wanted
   half.prior.value[layers::kBlur] =
       std::hypot(0.5 * options.prior.value[layers::kBlur], kHalvingsBlur);
   for (const std::size_t side : {layers::kLong, layers::kShort}) {
@@ -287,10 +283,7 @@ Track WithLayers(const Track& track, const LayerFit& fit,
   out.body.blur_px = fit.layers.blur;
   out.body.shutter_fraction = fit.layers.exposure;
   const Shape& shape = fit.layers.shape;
-  const double contrast = std::max(std::abs(track.body.contrast_dn), 1.0);
-  const double share = std::min(1.0, fit.layers.texture_dn / contrast);
-  const double texture_px =
-      fit.layers.flat ? 0.0 : kCommonShare * fit.layers.blur * share;
+  const double texture_px = std::max(fit.common.u_x_px, fit.common.u_y_px);
   const double beyond_px = size ? OutlinesBeside(fit, *size) : 0.0;
   out.body.u_texture_px =
       std::hypot(texture_px, PlaceUncertaintyBeside(beyond_px));
@@ -300,7 +293,10 @@ Track WithLayers(const Track& track, const LayerFit& fit,
   constexpr double kSizeU_px = 0.003;
   const double u_size = std::hypot(kSizeU_px, kModel_px, texture_px);
   if (turns) {
-    out.body.u_common_angle_rad = out.body.u_common_px / shape.half_long;
+    out.body.u_common_angle_rad =
+        std::hypot(fit.common.u_angle_rad,
+                   std::hypot(kModel_px, PlaceUncertaintyBeside(beyond_px)) /
+                       shape.half_long);
   }
   if (size && shape.disc) {
     out.body.radius_px = {shape.half_long, u_size};
