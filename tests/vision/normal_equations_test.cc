@@ -99,7 +99,8 @@ TEST(NormalEquations, StiffnessOfTheCoarseSpaceIsThatOfProducts) {
   }
 }
 
-TEST(JointStep, IsTheSameWithACoarseSpaceInFewerProducts) {
+// At the same tolerance: what pixels tell little of is solved first, not last.
+TEST(JointStep, ACoarseSpaceIsNearerAndCostsNoProducts) {
   const Equations at;
   const CoarseSpace coarse =
       FindCoarseSpace(at.layers, at.frames, at.evidence, at.poses, at.options);
@@ -112,7 +113,12 @@ TEST(JointStep, IsTheSameWithACoarseSpaceInFewerProducts) {
   const JointStep plain = solve(CoarseSpace(), kTolerance);
   const JointStep step = solve(coarse, kTolerance);
   const JointStep exact = solve(CoarseSpace(), 1e-5);
-  EXPECT_LT(3 * step.products, 2 * plain.products);
+  EXPECT_LE(step.products, plain.products);
+  EXPECT_LT(step.products, 60);
+  const auto off = [&](const JointStep& of) {
+    return std::abs(of.poses[0].y - exact.poses[0].y);
+  };
+  EXPECT_LT(2.0 * off(step), off(plain));
   for (std::size_t t = 0; t < at.poses.size(); ++t) {
     EXPECT_NEAR(step.poses[t].x, exact.poses[t].x, 2e-3) << t;
     EXPECT_NEAR(step.poses[t].y, exact.poses[t].y, 2e-3) << t;

@@ -209,6 +209,7 @@ Texture MeasureTexture(const Layers& layers, const std::vector<float>& weight) {
     off[c] = static_cast<double>(layers.picture[c]) - level;
     sum += off[c] * off[c] + own(c);
   }
+  // Of the autocorrelation: about an edge's blur, over which T is not told.
   constexpr std::int32_t kLag_px = 2;
   double apart = 0.0;
   double pairs = 0.0;

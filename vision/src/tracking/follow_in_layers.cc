@@ -54,6 +54,13 @@ std::size_t CountPictures(const Shape& shape, std::size_t least,
 // a change of size.
 constexpr double kMostGrowth = 0.02;
 
+// Times what the normal equations leave open of the place and attitude that all
+// poses share: their derivatives are to first order where layers meet, and a
+// texture is no Gaussian field. Of 99 photographed scenes in two formats 0.945
+// of the face angles were within 1.96 u without it, of 44 rendered balls and
+// blocks with strong pictures the places had an rms of 1.9 u.
+constexpr double kCommonFactor = 1.5;
+
 // What edges that are not blurred quite as Gauss's do to all poses of a clip
 // together. The errors of 198 face angles of known truth in raw clips are most
 // likely with 0.001; without it the median |error| / u is 0.73 and 0.924 lie
@@ -283,7 +290,8 @@ Track WithLayers(const Track& track, const LayerFit& fit,
   out.body.blur_px = fit.layers.blur;
   out.body.shutter_fraction = fit.layers.exposure;
   const Shape& shape = fit.layers.shape;
-  const double texture_px = std::max(fit.common.u_x_px, fit.common.u_y_px);
+  const double texture_px =
+      kCommonFactor * std::max(fit.common.u_x_px, fit.common.u_y_px);
   const double beyond_px = size ? OutlinesBeside(fit, *size) : 0.0;
   out.body.u_texture_px =
       std::hypot(texture_px, PlaceUncertaintyBeside(beyond_px));
@@ -294,7 +302,7 @@ Track WithLayers(const Track& track, const LayerFit& fit,
   const double u_size = std::hypot(kSizeU_px, kModel_px, texture_px);
   if (turns) {
     out.body.u_common_angle_rad =
-        std::hypot(fit.common.u_angle_rad,
+        std::hypot(kCommonFactor * fit.common.u_angle_rad,
                    std::hypot(kModel_px, PlaceUncertaintyBeside(beyond_px)) /
                        shape.half_long);
   }
