@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <initializer_list>
 #include <optional>
+#include <vector>
 
 namespace touchdown::vision {
 namespace {
@@ -12,16 +15,15 @@ using layers::LayerFit;
 const BodySize kSize{{40.0, 0.02, std::nullopt}, {20.0, 0.02, std::nullopt}};
 
 // A textured face, whose sides are held.
-LayerFit Held(double loss, double beside_px) {
+LayerFit Held(double beside_px) {
   LayerFit fit;
   fit.layers.shape = {false, 20.0, 10.0};
-  fit.loss = loss;
   fit.beyond_px = beside_px;
   return fit;
 }
 
 TEST(OutlinesBeside, OfTheSideThatIsFartherOffBeyondItsU) {
-  LayerFit fit = Held(1.0, 0.0);
+  LayerFit fit = Held(0.0);
   EXPECT_EQ(OutlinesBeside(fit, kSize), 0.0);
   fit.layers.shape.half_short = 10.1;
   fit.layers.shape.half_long = 20.02;
@@ -29,38 +31,69 @@ TEST(OutlinesBeside, OfTheSideThatIsFartherOffBeyondItsU) {
   fit.beyond_px = 0.1;
   EXPECT_NEAR(OutlinesBeside(fit, kSize), 0.1414, 0.001);
   // A disc has one side.
-  fit = Held(1.0, 0.0);
+  fit = Held(0.0);
   fit.layers.shape = {true, 20.0, 15.0};
   EXPECT_EQ(OutlinesBeside(fit, kSize), 0.0);
 }
 
-// Losses and distances of clips of known truth, rendered by generators of
-// another hand (strangers, composite.py, seeds 29 and 30).
-
-TEST(IsBetterInLight, BothWitnessesSpeakForIt) {
-  EXPECT_TRUE(IsBetterInLight(Held(0.1043, 0.0), Held(0.1148, 0.3111), kSize));
-  EXPECT_TRUE(
-      IsBetterInLight(Held(0.4949, 0.0911), Held(0.5004, 0.1460), kSize));
+// Of cost((log gamma - lowest) / u) at such log gammas.
+std::vector<GammaTrial> Trials(double lowest, double u,
+                               std::initializer_list<double> log_gammas) {
+  std::vector<GammaTrial> trials;
+  for (const double at : log_gammas) {
+    const double z = (at - lowest) / u;
+    trials.push_back({at, 7.0 + 0.5 * z * z, 0.0, 0.0});
+  }
+  return trials;
 }
 
-// A fit that has not settled.
-TEST(IsBetterInLight, SidesDecideWhereBothExplainTheLevels) {
-  EXPECT_TRUE(
-      IsBetterInLight(Held(0.4321, 0.0773), Held(0.4302, 0.2182), kSize));
-  EXPECT_FALSE(
-      IsBetterInLight(Held(0.4337, 0.0752), Held(0.4317, 0.1317), kSize));
+TEST(FindLeastLogGamma, OfAParabola) {
+  EXPECT_NEAR(FindLeastLogGamma(Trials(-0.6, 0.2, {0.0, -0.35, -0.8})), -0.6,
+              1e-12);
 }
 
-// Linear cameras, whose outlines seemed to show 0.36 and 0.56.
-TEST(IsBetterInLight, SidesOrLevelsMaySpeakAgainstIt) {
-  EXPECT_FALSE(IsBetterInLight(Held(0.0575, 0.0734), Held(0.0577, 0.0), kSize));
-  EXPECT_FALSE(
-      IsBetterInLight(Held(0.1836, 0.0422), Held(0.1819, 0.0724), kSize));
+TEST(FindLeastLogGamma, NoneBeyondWhatCamerasHave) {
+  EXPECT_EQ(FindLeastLogGamma(Trials(0.2, 0.2, {0.0, -0.35, -0.8})), 0.0);
+  EXPECT_NEAR(FindLeastLogGamma(Trials(-3.0, 0.2, {0.0, -0.35, -0.8})),
+              std::log(0.3), 1e-12);
 }
 
-TEST(IsBetterInLight, WithoutASizeLevelsDecide) {
-  EXPECT_TRUE(IsBetterInLight(Held(0.9, 0.5), Held(1.0, 0.0), std::nullopt));
-  EXPECT_FALSE(IsBetterInLight(Held(1.0, 0.0), Held(0.9, 0.5), std::nullopt));
+// A cost that falls ever more steeply.
+TEST(FindLeastLogGamma, TheLastWhereNoParabolaHasALeast) {
+  EXPECT_EQ(FindLeastLogGamma(
+                {{0.0, 9.0, 0, 0}, {-0.35, 8.5, 0, 0}, {-0.8, 1.0, 0, 0}}),
+            -0.8);
+}
+
+TEST(LogGammaUncertainty, OfAParabolaWhateverTheOrder) {
+  EXPECT_NEAR(LogGammaUncertainty(Trials(-0.6, 0.15, {0.0, -0.35, -0.8, -0.6})),
+              0.15, 1e-12);
+}
+
+// Mean square of x over 1 / (1 + (slab's share)), by a sum over the slab.
+TEST(LogGammaUncertainty, OfALinearCameraIsThatOfTheSlab) {
+  const double slab = -std::log(0.3);
+  for (const double steep : {8.0, 20.0}) {
+    double square = 0.0;
+    constexpr int kSteps = 20000;
+    for (int i = 0; i < kSteps; ++i) {
+      const double x = slab * (i + 0.5) / kSteps;
+      square += x * x * std::exp(-steep * x) / kSteps;
+    }
+    EXPECT_NEAR(LogGammaUncertainty({{0.0, 3.0, 0.0, 0.0},
+                                     {-0.35, 3.0 + 0.35 * steep, 0.0, 0.0}}),
+                std::sqrt(square), 0.02 * std::sqrt(square))
+        << steep;
+  }
+}
+
+TEST(LogGammaUncertainty, IsNeverMoreThanThatOfAnyGamma) {
+  const double most = -std::log(0.3) / std::sqrt(3.0);
+  EXPECT_EQ(LogGammaUncertainty({{0.0, 3.0, 0.0, 0.0}}), most);
+  EXPECT_EQ(LogGammaUncertainty({{0.0, 3.0, 0.0, 0.0}, {-0.35, 3.0, 0.0, 0.0}}),
+            most);
+  EXPECT_EQ(LogGammaUncertainty({{0.0, 3.0, 0.0, 0.0}, {-0.35, 2.0, 0.0, 0.0}}),
+            most);
 }
 
 }  // namespace

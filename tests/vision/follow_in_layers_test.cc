@@ -164,6 +164,44 @@ TEST(FollowInLayers, ALinearCameraHasNoGamma) {
   EXPECT_FALSE(track->body.gamma);
 }
 
+// What a size that is not known owes to the gamma is part of its u.
+TEST(FollowInLayers, TheSizeOfABodyThatNobodyMeasured) {
+  for (const double gamma : {1.0, 0.45}) {
+    DrawnBlock block = Dark(gamma);
+    block.face = [](double along, double across) {
+      return 60.0 + 25.0 * std::sin(0.8 * along) * std::cos(0.6 * across);
+    };
+    const auto clip = DrawBlock(block);
+    const std::int64_t frames = clip->info().frames;
+    const auto track =
+        FollowInLayers(*clip, EstimateBackground(*clip, 0, frames),
+                       RoughTrack(block, *clip, 0, frames), std::nullopt, 1);
+    ASSERT_TRUE(track) << track.error().reason;
+    const core::Estimate& half_long = track->body.half_long_px;
+    const core::Estimate& half_short = track->body.half_short_px;
+    EXPECT_NEAR(half_long.value, block.half_long_px, 3.0 * half_long.u);
+    EXPECT_NEAR(half_short.value, block.half_short_px, 3.0 * half_short.u);
+    EXPECT_NEAR(half_long.value, block.half_long_px, 0.15);
+    EXPECT_LT(half_long.u, 0.3);
+    ExpectTrue(*track, block, 0.15);
+  }
+}
+
+// Of a linear camera: 0.3 px, which a gamma of 0.6 would explain.
+TEST(FollowInLayers, AMisstatedSizeIsNotTakenForAGamma) {
+  const DrawnBlock block = Dark(1.0);
+  const auto clip = DrawBlock(block);
+  const std::int64_t frames = clip->info().frames;
+  BodySize size = SizeOf(block);
+  size.long_px.value += 0.6;
+  size.short_px.value += 0.6;
+  const auto track =
+      FollowInLayers(*clip, EstimateBackground(*clip, 0, frames),
+                     RoughTrack(block, *clip, 0, frames), size, 1);
+  ASSERT_TRUE(track) << track.error().reason;
+  EXPECT_FALSE(track->body.gamma);
+}
+
 // Who states a camera's gamma has light, and no second one is looked for.
 TEST(FollowInLayers, AGammaThatWasStatedStays) {
   const DrawnBlock block = Dark(0.45);

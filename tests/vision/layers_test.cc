@@ -452,43 +452,6 @@ TEST(FitLayers, ATexturedFace) {
   EXPECT_LT(errors.worst_px, 0.12);
 }
 
-// level = 255 (light / 255)^gamma
-LayeredScene LightScene() {
-  LayeredScene scene;
-  scene.still = [](double x, double y) {
-    return 150.0 + 0.3 * x + (y > 40.0 ? -90.0 : 0.0);
-  };
-  scene.body = [](double, double) { return 20.0; };
-  for (int t = 0; t < 24; ++t) {
-    scene.poses.push_back({18.0 + 2.3 * t, 24.0 + 0.4 * t, 0.05 * t});
-  }
-  return scene;
-}
-
-float Level(float light, double gamma) {
-  return static_cast<float>(
-      255.0 *
-      std::pow(std::max(static_cast<double>(light), 0.0) / 255.0, gamma));
-}
-
-TEST(FitLayers, CornersTellTheCamerasGamma) {
-  for (const double gamma : {1.0, 0.45}) {
-    LayeredScene scene = LightScene();
-    scene.noise_dn = 0.5;
-    PictureStack stack = Film(scene, 7);
-    for (float& level : stack.levels) level = Level(level, gamma);
-    std::vector<float> still = Paint(scene, nullptr);
-    for (float& level : still) level = Level(level, gamma);
-    FitLayersOptions options = OptionsOf(scene);
-    options.prior.u[kCurve] = 1.0;
-    const LayerFit fit = FitLayers(stack, scene.shape, Shaken(scene.poses, 0.3),
-                                   still, scene.noise_dn, options);
-    // Of first order: the next is a tenth of it.
-    ASSERT_TRUE(fit.curve);
-    EXPECT_NEAR(1.0 / (1.0 + *fit.curve), gamma, 0.06);
-  }
-}
-
 // Layers that are right but for a quarter of a pixel need few steps to be so
 // again.
 TEST(ImproveLayers, EndsWhereTheFitFromNothingEnds) {
@@ -511,17 +474,15 @@ TEST(ImproveLayers, EndsWhereTheFitFromNothingEnds) {
   }
 }
 
-TEST(FitLayers, TheLossIsThatOfItsResiduals) {
+TEST(MeanLoss, IsThatOfTheResiduals) {
   const LayeredScene scene = BlockOnGround();
-  FitLayersOptions options = OptionsOf(scene);
-  options.loss = [](float level, float model) {
+  const PictureStack stack = Film(scene, 11);
+  const LayerFit fit = FitFromTruth(scene, stack);
+  const double loss = MeanLoss(stack, fit, [](float level, float model) {
     return static_cast<double>((level - model) * (level - model));
-  };
-  const LayerFit fit =
-      FitLayers(Film(scene, 11), scene.shape, scene.poses,
-                Paint(scene, nullptr), scene.noise_dn, options);
+  });
   // Rounding, too.
-  EXPECT_NEAR(std::sqrt(fit.loss), std::sqrt(1.0 + 1.0 / 12.0), 0.05);
+  EXPECT_NEAR(std::sqrt(loss), std::sqrt(1.0 + 1.0 / 12.0), 0.05);
 }
 
 // An outline that settled on the ground's edge, a pixel below the body.

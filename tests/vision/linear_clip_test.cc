@@ -78,9 +78,9 @@ TEST(LinearClip, AViewShowsTheSameAndKnowsThatItIsLight) {
   Ramp levels(8);
   const auto view = ViewInLight(levels, 0.45);
   const auto whole = MakeLinear(std::make_unique<Ramp>(8), 0.45);
-  EXPECT_FALSE(levels.info().in_light);
-  EXPECT_TRUE(view->info().in_light);
-  EXPECT_TRUE(whole->info().in_light);
+  EXPECT_FALSE(levels.info().gamma_is_known);
+  EXPECT_TRUE(view->info().gamma_is_known);
+  EXPECT_TRUE(whole->info().gamma_is_known);
   for (const std::int32_t x : {0, 7, 15}) {
     EXPECT_EQ(view->Read(1).at(x, 9), whole->Read(1).at(x, 9));
   }

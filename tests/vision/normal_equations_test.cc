@@ -65,7 +65,7 @@ struct Equations {
     evidence = WeighStill(stack, layers, frames, 1);
     options.prior.value = {1.0, 0.09, scene.shape.half_long,
                            scene.shape.half_short};
-    options.prior.u = {0.5, 0.2, 0.0, 0.0, 20.0, 20.0, 0.0};
+    options.prior.u = {0.5, 0.2, 0.0, 0.0, 20.0, 20.0};
     options.least_chi2 = 0.0;
     options.most_products = 1000;
     options.threads = 1;
@@ -129,20 +129,23 @@ TEST(JointStep, ACoarseSpaceIsNearerAndCostsNoProducts) {
 // Against the scatter of the common place over frames of other noise: the step
 // from the truth. A texture hides it, so it is far above what scatter of the
 // poses would leave of a mean.
-TEST(JointStep, CommonPoseIsAsUncertainAsItScatters) {
+TEST(JointStep, WhatFramesShareIsAsUncertainAsItScatters) {
   constexpr int kDraws = 24;
   double square_x = 0.0;
   double square_y = 0.0;
   double square_angle = 0.0;
-  CommonPose stated;
+  double mean_long = 0.0;  // of the drawing's own picture at the rim
+  double square_long = 0.0;
+  CommonUncertainty stated;
   for (int draw = 0; draw < kDraws; ++draw) {
     const Equations at(100U + static_cast<unsigned>(draw), 0.0);
-    const CoarseSpace coarse = FindCoarseSpace(
-        at.layers, at.frames, at.evidence, at.poses, at.options);
     JointStepOptions options = at.options;
+    options.prior.u[kLong] = 0.3;
     options.tolerance = 1e-3;
-    stated = MeasureCommonPose(at.layers, at.frames, at.evidence, coarse,
-                               at.poses, options);
+    const CoarseSpace coarse =
+        FindCoarseSpace(at.layers, at.frames, at.evidence, at.poses, options);
+    stated = MeasureCommonUncertainty(at.layers, at.frames, at.evidence, coarse,
+                                      at.poses, options);
     const JointStep step =
         SolveJointStep(at.layers, at.frames, at.evidence, coarse, options);
     const double angle = at.poses[0].angle_rad;  // of all
@@ -158,14 +161,19 @@ TEST(JointStep, CommonPoseIsAsUncertainAsItScatters) {
     square_x += x * x / kDraws;
     square_y += y * y / kDraws;
     square_angle += turn * turn / kDraws;
+    mean_long += step.shared[kLong] / kDraws;
+    square_long += step.shared[kLong] * step.shared[kLong] / kDraws;
   }
   // The prior's part of u is not drawn here: at most as large. 24 draws leave
   // a seventh.
-  EXPECT_LT(std::sqrt(square_x), 1.4 * stated.u_x_px);
-  EXPECT_LT(std::sqrt(square_y), 1.4 * stated.u_y_px);
-  EXPECT_LT(std::sqrt(square_angle), 1.4 * stated.u_angle_rad);
-  EXPECT_GT(std::sqrt(square_x), 0.2 * stated.u_x_px);
-  EXPECT_GT(std::sqrt(square_y), 0.2 * stated.u_y_px);
+  EXPECT_LT(std::sqrt(square_x), 1.4 * stated.x_px);
+  EXPECT_LT(std::sqrt(square_y), 1.4 * stated.y_px);
+  EXPECT_LT(std::sqrt(square_angle), 1.4 * stated.angle_rad);
+  const double scatter_long = std::sqrt(square_long - mean_long * mean_long);
+  EXPECT_LT(scatter_long, 1.4 * stated.long_px);
+  EXPECT_GT(scatter_long, 0.2 * stated.long_px);
+  EXPECT_GT(std::sqrt(square_x), 0.2 * stated.x_px);
+  EXPECT_GT(std::sqrt(square_y), 0.2 * stated.y_px);
 }
 
 }  // namespace

@@ -119,6 +119,7 @@ void ExpectSameClip(const fs::path& path, const ClipOptions& options = {}) {
   EXPECT_EQ(a.frames, b.frames);
   EXPECT_EQ(a.bit_depth, b.bit_depth);
   EXPECT_EQ(a.is_predicted, b.is_predicted);
+  EXPECT_EQ(a.gamma_is_known, b.gamma_is_known);
   EXPECT_EQ(a.has_colour, b.has_colour);
   EXPECT_EQ(a.warnings, b.warnings);
   EXPECT_EQ(a.time_base.fps, b.time_base.fps);

@@ -37,7 +37,7 @@ class LinearClip final : public Clip {
       : clip_(&clip), gamma_(gamma), info_(clip.info()) {
     table_ = MakeTable(MakeLightScale(info_.bit_depth, gamma));
     info_.bit_depth = LinearDepth(info_.bit_depth);
-    info_.in_light = true;
+    info_.gamma_is_known = true;
     set_cancellation(clip_->cancellation());
   }
 

@@ -159,7 +159,6 @@ double Advance(const JointStep& joint, const FitLayersOptions& options,
   constexpr double kMostBlurStep = 0.3;      // px
   constexpr double kMostExposureStep = 0.2;  // of a frame
   constexpr double kMostSizeStep_px = 0.5;
-  constexpr double kMostCurveStep = 0.5;
   Layers& layers = fit.layers;
   const double reach = layers.shape.Reach();
   const double most_px = 1.5 * options.prior.value[kBlur];
@@ -188,7 +187,6 @@ double Advance(const JointStep& joint, const FitLayersOptions& options,
       layers.shape.disc ? layers.shape.half_long
                         : layers.shape.half_short +
                               Limited(joint.shared[kShort], kMostSizeStep_px);
-  layers.curve += Limited(joint.shared[kCurve], kMostCurveStep);
   layers.slope_x += joint.shared[kSlopeX];
   layers.slope_y += joint.shared[kSlopeY];
   for (std::size_t k = 0; k < kTerms && layers.flat; ++k) {
@@ -203,10 +201,9 @@ double Advance(const JointStep& joint, const FitLayersOptions& options,
   return moved;
 }
 
-JointStepOptions SolveOptions(const FitLayersOptions& options, double u_curve) {
+JointStepOptions SolveOptions(const FitLayersOptions& options) {
   JointStepOptions solve;
   solve.prior = options.prior;
-  solve.prior.u[kCurve] = u_curve;
   solve.turns = options.turns;
   solve.threads = options.threads;
   solve.tolerance = kMeasured;
@@ -219,60 +216,14 @@ double MeasureBeyond(const Layers& layers,
                      const std::vector<FrameSamples>& frames,
                      const StillEvidence& evidence, const CoarseSpace& coarse,
                      const FitLayersOptions& options) {
-  constexpr double kHeld = 0.0;     // u of the curve
   constexpr double kFree_px = 1.0;  // more than any outline is off
-  JointStepOptions solve = SolveOptions(options, kHeld);
+  JointStepOptions solve = SolveOptions(options);
   solve.prior.u[kLong] = kFree_px;
   solve.prior.u[kShort] = kFree_px;
   const JointStep joint =
       SolveJointStep(layers, frames, evidence, coarse, solve);
   return std::max(std::abs(joint.shared[kLong]),
                   std::abs(joint.shared[kShort]));
-}
-
-// C, from layers that hold 0 and are settled. One step tells whether there is
-// any; its size takes some more.
-double MeasureCurve(const PictureStack& stack, const CoarseSpace& coarse,
-                    const FitLayersOptions& options, LayerFit fit,
-                    std::vector<FrameSamples>& frames) {
-  // A camera's gamma below 0.8: more of it moves outlines by 0.05 px.
-  constexpr double kWorthIt = 0.25;
-  const JointStepOptions solve = SolveOptions(options, options.prior.u[kCurve]);
-  double curve = 0.0;
-  for (int step = 0; step < options.steps; ++step) {
-    const double before = curve;
-    const StillEvidence evidence =
-        WeighStill(stack, fit.layers, frames, options.threads);
-    const JointStep joint =
-        SolveJointStep(fit.layers, frames, evidence, coarse, solve);
-    curve = fit.layers.curve + joint.shared[kCurve];
-    // Of 1 + C, as of gamma: what is left is measured again with light in place
-    // of levels. A fifth of it takes twice the steps.
-    constexpr double kSettled = 0.05;
-    if (curve < kWorthIt ||
-        std::abs(curve - before) < kSettled * (1.0 + curve)) {
-      break;
-    }
-    Advance(joint, options, fit);
-    LinearizeAll(stack, fit.layers, evidence.weight, fit.poses, options,
-                 frames);
-  }
-  return curve;
-}
-
-double MeanLoss(const std::vector<FrameSamples>& frames,
-                const FitLayersOptions& options) {
-  if (!options.loss) return 0.0;
-  double sum = 0.0;
-  std::size_t count = 0;
-  for (const FrameSamples& samples : frames) {
-    for (std::size_t i = 0; i < samples.size(); ++i) {
-      sum += options.loss(samples.level[i],
-                          samples.level[i] - samples.residual[i]);
-    }
-    count += samples.size();
-  }
-  return sum / static_cast<double>(std::max<std::size_t>(count, 1));
 }
 
 // Steps in all unknowns until the poses no longer move, from step
@@ -283,8 +234,7 @@ LayerFit Settle(const PictureStack& stack, int first_step,
   std::vector<FrameSamples> frames;
   StillEvidence evidence;
   CoarseSpace coarse;
-  constexpr double kHeld = 0.0;  // u of the curve: it is not fitted yet
-  JointStepOptions solve = SolveOptions(options, kHeld);
+  JointStepOptions solve = SolveOptions(options);
   // Poses that move by less are found: they are aligned once more each.
   constexpr double kStill_px = 5e-3;
   // Poses that move by more are not where they belong. Of 68 photographed clips
@@ -312,7 +262,6 @@ LayerFit Settle(const PictureStack& stack, int first_step,
     fit.converged = moved_px < kStill_px && step > kFlatSteps;
   }
   LinearizeAll(stack, layers, evidence.weight, fit.poses, options, frames);
-  fit.loss = MeanLoss(frames, options);
   layers.noise_dn = MeasureNoise(frames, layers.noise_dn);
   if (!layers.flat) {
     layers.picture_weight = WeighPicture(layers, frames);
@@ -331,15 +280,12 @@ LayerFit Settle(const PictureStack& stack, int first_step,
     constexpr double kRoughly = 0.2;
     solve.turns = options.turns;
     solve.tolerance = kRoughly;
-    fit.common =
-        MeasureCommonPose(layers, frames, evidence, coarse, fit.poses, solve);
+    fit.common = MeasureCommonUncertainty(layers, frames, evidence, coarse,
+                                          fit.poses, solve);
   }
   if (options.textured && options.prior.u[kLong] == 0.0) {
     fit.beyond_px =
         MeasureBeyond(fit.layers, frames, evidence, coarse, options);
-  }
-  if (options.prior.u[kCurve] > 0.0) {
-    fit.curve = MeasureCurve(stack, coarse, options, fit, frames);
   }
   return fit;
 }
@@ -358,7 +304,6 @@ void SetOptics(double blur, double exposure, SharedPrior& prior) {
 LayerFit ImproveLayers(const PictureStack& stack, LayerFit fit,
                        const FitLayersOptions& options) {
   fit.converged = false;
-  fit.layers.curve = 0.0;
   // By then a texture was told, and poses no longer are rough.
   constexpr int kFirstStep = kFlatSteps + 1;
   return Settle(stack, kFirstStep, options, std::move(fit));
@@ -383,6 +328,24 @@ LayerFit FitLayers(const PictureStack& stack, const Shape& shape,
   if (options.textured) LearnTexture(layers);
 
   return Settle(stack, 0, options, std::move(fit));
+}
+
+double MeanLoss(const PictureStack& stack, const LayerFit& fit,
+                const Loss& loss) {
+  const std::vector<LayerPose> motions =
+      EstimateMotions(fit.poses, stack.frames);
+  FrameSamples samples;
+  double sum = 0.0;
+  std::size_t count = 0;
+  for (std::size_t t = 0; t < fit.poses.size(); ++t) {
+    Linearize(stack, t, fit.layers, fit.poses[t], motions[t],
+              Derivatives::kByPose, samples);
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      sum += loss(samples.level[i], samples.level[i] - samples.residual[i]);
+    }
+    count += samples.size();
+  }
+  return sum / static_cast<double>(std::max<std::size_t>(count, 1));
 }
 
 }  // namespace touchdown::vision::layers

@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <functional>
-#include <optional>
 #include <vector>
 
 #include "layers/joint_step.h"
@@ -30,9 +29,6 @@ struct FitLayersOptions {
   int threads = 0;
   // Straight edges of the whole still picture, in the stack's coordinates.
   std::vector<StillLine> lines;
-  // What a pixel's level and the model's cost, so that fits of one clip whose
-  // levels are not of one scale can be compared. Empty: nothing.
-  std::function<double(float level, float model)> loss;
 };
 
 // What is known of the optics at first: whatever told them, pictures tell them
@@ -43,17 +39,12 @@ struct LayerFit {
   Layers layers;
   std::vector<LayerPose> poses;  // of each picture of the stack
   bool converged = false;
-  CommonPose common;  // of a textured body
-  double loss = 0.0;  // mean over the pixels that show something of the body
+  CommonUncertainty common;  // of a textured body
   // px by which outlines lie beside sizes that are held before a texture; 0 of
   // others. What moves outlines, as a camera's gamma does, moves all edges of a
   // body in the air outward alike; at the ground one of them counts for less,
   // and the place is off by up to as much.
   double beyond_px = 0.0;
-  // C as the outlines show it, where the prior's u leaves it free: what a
-  // camera's gamma makes of them, but a blur of another kind than Gauss's looks
-  // alike. `layers` hold 0.
-  std::optional<double> curve;
 };
 
 // From layers and poses that are nearly right: those of another scale of
@@ -67,5 +58,13 @@ LayerFit FitLayers(const PictureStack& stack, const Shape& shape,
                    const std::vector<LayerPose>& poses,
                    const std::vector<float>& still, double noise_dn,
                    const FitLayersOptions& options);
+
+// What a pixel's level and the model's cost.
+using Loss = std::function<double(float level, float model)>;
+
+// Mean over the pixels that show something of the body, so that fits of one
+// clip whose levels are not of one scale can be compared.
+double MeanLoss(const PictureStack& stack, const LayerFit& fit,
+                const Loss& loss);
 
 }  // namespace touchdown::vision::layers

@@ -54,20 +54,24 @@ int SolveEquations(NormalEquations& equations, const JointStepOptions& options,
 
 }  // namespace
 
-CommonPose MeasureCommonPose(const Layers& layers,
-                             const std::vector<FrameSamples>& frames,
-                             const StillEvidence& evidence,
-                             const CoarseSpace& coarse,
-                             const std::vector<LayerPose>& poses,
-                             const JointStepOptions& options) {
+CommonUncertainty MeasureCommonUncertainty(
+    const Layers& layers, const std::vector<FrameSamples>& frames,
+    const StillEvidence& evidence, const CoarseSpace& coarse,
+    const std::vector<LayerPose>& poses, const JointStepOptions& options) {
   NormalEquations equations(layers, frames, evidence, options.prior,
                             options.turns, coarse, options.threads);
   Unknowns unused = equations.Zero();
   equations.Fill(unused);
   JointStepOptions solve = options;
   solve.least_chi2 = 0.0;
-  std::array<double, kPose> u{};
-  for (std::size_t k = 0; k < (options.turns ? kPose : kPose - 1); ++k) {
+  const auto uncertainty = [&](const Unknowns& w) {
+    Unknowns residual = w;
+    Unknowns solution = equations.Zero();
+    SolveEquations(equations, solve, layers.noise_dn, residual, solution);
+    return layers.noise_dn * std::sqrt(std::max(0.0, w.Dot(solution)));
+  };
+  // Axis `k` of all poses, turned with each.
+  const auto of_axis = [&](std::size_t k) {
     Unknowns mean = equations.Zero();
     for (std::size_t t = 0; t < poses.size(); ++t) {
       const Eigen::Matrix3d axes =
@@ -79,12 +83,21 @@ CommonPose MeasureCommonPose(const Layers& layers,
             static_cast<double>(poses.size());
       }
     }
-    Unknowns residual = mean;
-    Unknowns solution = equations.Zero();
-    SolveEquations(equations, solve, layers.noise_dn, residual, solution);
-    u[k] = layers.noise_dn * std::sqrt(std::max(0.0, mean.Dot(solution)));
-  }
-  return {u[0], u[1], u[2]};
+    return uncertainty(mean);
+  };
+  const auto of_side = [&](SharedParameter side) {
+    if (!(options.prior.u[side] > 0.0)) return 0.0;
+    Unknowns one = equations.Zero();
+    one.shared[side] = 1.0;
+    return uncertainty(one);
+  };
+  CommonUncertainty u;
+  u.x_px = of_axis(0);
+  u.y_px = of_axis(1);
+  if (options.turns) u.angle_rad = of_axis(2);
+  u.long_px = of_side(kLong);
+  u.short_px = of_side(kShort);
+  return u;
 }
 
 JointStep SolveJointStep(const Layers& layers,

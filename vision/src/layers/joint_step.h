@@ -52,19 +52,19 @@ JointStep SolveJointStep(const Layers& layers,
                          const CoarseSpace& coarse,
                          const JointStepOptions& options);
 
-// Standard uncertainties of what all poses have in common along the body's own
-// axes, which no scatter of theirs shows: w' A^-1 w times the noise's variance,
-// w being the mean of their components along an axis. Three solutions.
-struct CommonPose {
-  double u_x_px = 0.0;
-  double u_y_px = 0.0;
-  double u_angle_rad = 0.0;  // 0 where angles are held
+// Standard uncertainties of what all frames have in common, which no scatter of
+// theirs shows: w' A^-1 w times the noise's variance, w being the mean of the
+// poses along one of the body's axes, or one shared parameter. A solution each.
+struct CommonUncertainty {
+  double x_px = 0.0;  // the place, along the body's long axis
+  double y_px = 0.0;
+  double angle_rad = 0.0;  // 0 where angles are held
+  double long_px = 0.0;    // half sides; 0 where they are held
+  double short_px = 0.0;
 };
-CommonPose MeasureCommonPose(const Layers& layers,
-                             const std::vector<FrameSamples>& frames,
-                             const StillEvidence& evidence,
-                             const CoarseSpace& coarse,
-                             const std::vector<LayerPose>& poses,
-                             const JointStepOptions& options);
+CommonUncertainty MeasureCommonUncertainty(
+    const Layers& layers, const std::vector<FrameSamples>& frames,
+    const StillEvidence& evidence, const CoarseSpace& coarse,
+    const std::vector<LayerPose>& poses, const JointStepOptions& options);
 
 }  // namespace touchdown::vision::layers

@@ -339,8 +339,7 @@ void RowLinearizer::Linearize(std::int32_t row, std::int32_t begin,
   std::copy_n(
       stack_.WindowRow(picture_, row) + (begin - stack_.windows[picture_].x), n,
       levels.begin());
-  FinishPixels(levels, static_cast<float>(layers_.curve),
-               static_cast<float>(layers_.noise_dn), sums_);
+  FinishPixels(levels, static_cast<float>(layers_.noise_dn), sums_);
   // From one pixel that shows nothing of the body to the next.
   for (std::size_t from = 0; from < n;) {
     std::size_t to = from;

@@ -10,8 +10,6 @@
 // B  still picture            T  the body's picture (body_picture.h)
 // M  coverage of blur s (shape_cover.h)
 // S  shading that stays with the light: a slope over the body
-// A camera of gamma other than 1 shows mixtures of two levels too bright: to
-// first order  C/2 m (1 - m) (t - B)^2 / I,  m: coverage, t: what is covered.
 // w_k, tau_k  Gauss-Legendre nodes of the exposure, the share e of a frame
 //    interval; v  the pose's change in one interval
 // The camera blurs the product of the layers, not the layers: for a Gaussian
@@ -44,7 +42,7 @@ struct LayerPose {
 
 inline constexpr std::size_t kPose = 3;     // x, y, angle
 inline constexpr std::size_t kTerms = 6;    // of a quadratic: 1 x y xx xy yy
-inline constexpr std::size_t kShared = 13;  // what the frames share, see below
+inline constexpr std::size_t kShared = 12;  // what the frames share, see below
 
 // What T has beside a quadratic, as a Gaussian Markov random field of Matern's
 // class on the grid of T's coefficients (F. Lindgren, H. Rue and J. Lindstrom,
@@ -64,7 +62,6 @@ struct Layers {
   double exposure = 0.3;  // e, of a frame interval; kLeastExposure or more
   double slope_x = 0.0;   // S: DN across the body's reach
   double slope_y = 0.0;
-  double curve = 0.0;  // C: (1 - gamma) / gamma of the camera
 
   // T: a quadratic in x and y over the body's reach where the body is flat
   // (most are: then no picture is learned, which is ten times faster), else a
@@ -105,7 +102,6 @@ enum SharedParameter : std::size_t {
   kShort,
   kSlopeX,
   kSlopeY,
-  kCurve,
   kQuadratic  // the first of kTerms
 };
 

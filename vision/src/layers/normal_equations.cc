@@ -271,8 +271,7 @@ void NormalEquations::Fill(Unknowns& right) {
                                      layers_.shape.half_long,
                                      layers_.shape.half_short,
                                      layers_.slope_x,
-                                     layers_.slope_y,
-                                     layers_.curve};
+                                     layers_.slope_y};
   std::copy(layers_.quadratic.begin(), layers_.quadratic.end(),
             now.begin() + kQuadratic);
   for (std::size_t a = 0; a < kShared; ++a) {

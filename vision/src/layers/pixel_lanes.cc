@@ -1,7 +1,5 @@
 #include "layers/pixel_lanes.h"
 
-#include <algorithm>
-
 #include "numbers/lanes.h"
 
 namespace touchdown::vision::layers {
@@ -50,7 +48,6 @@ void AddNode(const NodeNumbers& node, const NodeLanes& seen, bool all,
     const Wide own = m_x * t_x + m_y * t_y;
     const Wide share = w * cover;
     WideAt(&sums.covered[i]) += share;
-    WideAt(&sums.lifted[i]) += share * over;
     WideAt(&sums.model[i]) +=
         share * over + w * (node.blur2 * own - WideAt(&seen.product[i]));
     const Wide g_x = by_x * over + cover * tilt_x - WideAt(&seen.product_x[i]);
@@ -93,21 +90,8 @@ void AddNode(const NodeNumbers& node, const NodeLanes& seen, bool all,
 }
 
 TOUCHDOWN_WIDEST
-void FinishPixels(const Lanes& levels, float curve, float noise_dn,
-                  PixelLanes& sums) {
-  constexpr float kLeastLevel_dn = 4.0F;  // beside it black is no zero
+void FinishPixels(const Lanes& levels, float noise_dn, PixelLanes& sums) {
   for (std::size_t i = 0; i < kChunk; ++i) {
-    const float covered = std::max(sums.covered[i], kLeastCover);
-    const float step = sums.lifted[i] / covered;
-    const float bent = 0.5F * step / std::max(sums.model[i], kLeastLevel_dn);
-    const float by_curve = covered * (1.0F - covered) * step * bent;
-    sums.by_shared[kCurve][i] = by_curve;
-    sums.model[i] += curve * by_curve;
-    const float steeper = 1.0F + curve * (1.0F - 2.0F * covered) * bent;
-    for (Lanes& slope : sums.by_pose) slope[i] *= steeper;
-    for (const std::size_t j : {kBlur, kExposureSquare, kLong, kShort}) {
-      sums.by_shared[j][i] *= steeper;
-    }
     sums.residual[i] = levels[i] - sums.model[i];
     sums.weight[i] = RobustWeight(sums.residual[i], noise_dn);
   }

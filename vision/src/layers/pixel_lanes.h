@@ -61,7 +61,6 @@ struct alignas(64) NodeLanes {
 struct alignas(64) PixelLanes {
   Lanes behind;   // B
   Lanes covered;  // sum of w M
-  Lanes lifted;   // by what covers it: sum of w M (T + S - B)
   Lanes model;
   std::array<Lanes, kPose> by_pose;
   std::array<Lanes, kShared> by_shared;
@@ -76,8 +75,7 @@ void EvaluateFlat(const NodeNumbers& node, NodeLanes& seen);
 void AddNode(const NodeNumbers& node, const NodeLanes& seen, bool all,
              PixelLanes& sums);
 
-// The camera's curve and what is left of the levels, once all places are added.
-void FinishPixels(const Lanes& levels, float curve, float noise_dn,
-                  PixelLanes& sums);
+// What is left of the levels, once all places are added.
+void FinishPixels(const Lanes& levels, float noise_dn, PixelLanes& sums);
 
 }  // namespace touchdown::vision::layers

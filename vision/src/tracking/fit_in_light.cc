@@ -15,24 +15,6 @@ using layers::FitLayersOptions;
 using layers::LayerFit;
 using layers::Shape;
 
-// Cauchy's, at four standard deviations of the noise of the levels, which were
-// fitted on `scale`.
-std::function<double(float, float)> LossOfLevels(const LightScale& scale,
-                                                 const Background& levels) {
-  constexpr double kCut = 4.0;  // as layers::RobustWeight
-  const double cut_dn = kCut * std::sqrt(levels.UsualVariance());
-  return [scale, cut_dn](float level, float model) {
-    const double off = (scale.ToLevel(level) - scale.ToLevel(model)) / cut_dn;
-    return std::log1p(off * off);
-  };
-}
-
-// The camera's gamma as outlines show it; 1: that of a linear one. None has
-// more.
-double SeenGamma(const LayerFit& fit) {
-  return 1.0 / (1.0 + std::max(fit.curve.value_or(0.0), 0.0));
-}
-
 // Of levels as they are, or of light.
 LightScale ScaleOf(const Clip& clip, const std::optional<double>& gamma) {
   LightScale scale = MakeLightScale(clip.info().bit_depth, gamma.value_or(1.0));
@@ -89,7 +71,6 @@ LightFit FitLight(Clip& clip, const Background& background, const Shape& shape,
   const LayerEvidence& evidence = light.evidence;
   layers::SetOptics(layers.blur, layers.exposure, options.prior);
   options.lines = FindLines(seen, evidence, shape, layers.blur);
-  options.loss = LossOfLevels(scale, background);
   light.fit =
       ImproveLayers(evidence.stack,
                     StartInLight(last.fit, ScaleOf(clip, last.gamma), scale,
@@ -98,7 +79,122 @@ LightFit FitLight(Clip& clip, const Background& background, const Shape& shape,
   return light;
 }
 
+// What fits of one clip cost, in levels or in light.
+class GammaCost {
+ public:
+  // `levels`: the first fit, which the others are compared with.
+  GammaCost(const Clip& clip, const layers::SharedPrior& prior,
+            const LightFit& levels)
+      : clip_(clip), prior_(prior), noise_dn_(levels.fit.layers.noise_dn) {
+    // By which share the loss of a camera's own gamma exceeds the least, in
+    // photographed clips: little where layers explain the levels to the noise,
+    // more with what they do not explain, up to what it is in codecs' clips.
+    // Larger leaves a gamma open, smaller is sure of a wrong one.
+    constexpr double kShare = 0.001;
+    constexpr double kOfUnexplained = 0.01;
+    constexpr double kMostShare = 0.01;
+    const double misfit = noise_dn_ / levels.evidence.noise_dn;
+    const double unexplained = std::max(0.0, misfit * misfit - 1.0);
+    unit_ = 2.0 * MeasureLoss(levels) *
+            std::min(kShare + kOfUnexplained * unexplained, kMostShare);
+  }
+
+  GammaTrial Judge(const LightFit& fit) const {
+    const Shape& shape = fit.fit.layers.shape;
+    return {std::log(fit.gamma.value_or(1.0)),
+            MeasureLoss(fit) / unit_ +
+                CostOfSide(layers::kLong, shape.half_long) +
+                CostOfSide(layers::kShort, shape.half_short),
+            shape.half_long, shape.half_short};
+  }
+
+ private:
+  // Cauchy's, at four standard deviations of what the first fit left of the
+  // levels.
+  double MeasureLoss(const LightFit& fit) const {
+    constexpr double kCut = 4.0;
+    const double cut_dn = kCut * noise_dn_;
+    const LightScale scale = ScaleOf(clip_, fit.gamma);
+    return layers::MeanLoss(
+        fit.evidence.stack, fit.fit, [&](float level, float model) {
+          const double off =
+              (scale.ToLevel(level) - scale.ToLevel(model)) / cut_dn;
+          return std::log1p(off * off);
+        });
+  }
+
+  // Of a side that lies beside what is known of it; Cauchy's, since sizes are
+  // misstated, too: a gamma that makes one fit must not cost the pixels much.
+  double CostOfSide(layers::SharedParameter side, double half_px) const {
+    // What outlines of flat bodies are off.
+    constexpr double kOutline_px = 0.03;
+    const double u = prior_.u[side];
+    if (!(u > 0.0)) return 0.0;
+    const double off =
+        (half_px - prior_.value[side]) / std::hypot(u, kOutline_px);
+    return std::log1p(0.5 * off * off);
+  }
+
+  const Clip& clip_;
+  const layers::SharedPrior& prior_;
+  double noise_dn_ = 1.0;
+  double unit_ = 1.0;  // of the loss: one standard deviation of gamma costs 1/2
+};
+
+std::vector<GammaTrial>::const_iterator FindCheapest(
+    const std::vector<GammaTrial>& trials) {
+  return std::min_element(
+      trials.begin(), trials.end(),
+      [](const GammaTrial& a, const GammaTrial& b) { return a.cost < b.cost; });
+}
+
+// Second derivative of the cost by three trials, the second of which costs
+// least, and where it is least.
+struct Parabola {
+  double lowest = 0.0;
+  double curvature = 0.0;
+};
+Parabola FitParabola(const GammaTrial& a, const GammaTrial& b,
+                     const GammaTrial& c) {
+  const double ab = (b.cost - a.cost) / (b.log_gamma - a.log_gamma);
+  const double bc = (c.cost - b.cost) / (c.log_gamma - b.log_gamma);
+  const double curvature = 2.0 * (bc - ab) / (c.log_gamma - a.log_gamma);
+  return {0.5 * (a.log_gamma + b.log_gamma) - ab / curvature, curvature};
+}
+
+constexpr double kLeastGamma = 0.3;  // no camera has less
+
 }  // namespace
+
+double FindLeastLogGamma(const std::vector<GammaTrial>& trials) {
+  const Parabola parabola = FitParabola(trials[0], trials[1], trials[2]);
+  // Where it falls ever more steeply, the last is the best so far.
+  return parabola.curvature > 0.0
+             ? std::clamp(parabola.lowest, std::log(kLeastGamma), 0.0)
+             : trials.back().log_gamma;
+}
+
+double LogGammaUncertainty(std::vector<GammaTrial> trials) {
+  // From the largest gamma to the least.
+  std::sort(trials.begin(), trials.end(),
+            [](const GammaTrial& a, const GammaTrial& b) {
+              return a.log_gamma > b.log_gamma;
+            });
+  const auto best = FindCheapest(trials);
+  const double slab = -std::log(kLeastGamma);
+  const double most = slab / std::sqrt(3.0);  // of any gamma in it
+  if (trials.size() < 2) return most;
+  if (best == trials.begin()) {
+    const double steep =
+        (best[1].cost - best->cost) / (best->log_gamma - best[1].log_gamma);
+    return std::min(most, std::sqrt(2.0 / (slab * steep)) / steep);
+  }
+  const auto middle = best + 1 == trials.end() ? best - 1 : best;
+  if (middle == trials.begin()) return most;
+  const double curvature =
+      FitParabola(middle[-1], *middle, middle[1]).curvature;
+  return curvature > 0.0 ? std::min(most, 1.0 / std::sqrt(curvature)) : most;
+}
 
 double OutlinesBeside(const LayerFit& fit, const BodySize& size) {
   const Shape& shape = fit.layers.shape;
@@ -113,50 +209,57 @@ double OutlinesBeside(const LayerFit& fit, const BodySize& size) {
   return std::hypot(fit.beyond_px, std::max(across, along));
 }
 
-bool IsBetterInLight(const LayerFit& light, const LayerFit& before,
-                     const std::optional<BodySize>& size) {
-  // Of the loss: a fit that has not settled yet is off by so much. Larger takes
-  // light by the sides alone. Not studied.
-  constexpr double kAlike = 0.01;
-  // Ratio of the distances. Larger takes light for noise of the outlines. Not
-  // studied.
-  constexpr double kMuchNearer = 0.5;
-  if (!size) return light.loss < before.loss;
-  const double beside_px = OutlinesBeside(light, *size);
-  const double before_px = OutlinesBeside(before, *size);
-  return (light.loss < before.loss && beside_px <= before_px) ||
-         (light.loss < (1.0 + kAlike) * before.loss &&
-          beside_px < kMuchNearer * before_px);
-}
-
-LightFit FitLevelsThenLight(Clip& clip, const Background& background,
-                            const Shape& shape, LayerEvidence evidence,
-                            const std::optional<BodySize>& size,
-                            FitLayersOptions options) {
-  // Of a gamma: nearer to 1, what it does to outlines is within their u.
-  constexpr double kClearlyNot1 = 0.72;
-  constexpr double kLeast = 0.3;  // no camera has less: the outlines err
-  // In light with the camera's own gamma outlines still show 0.9 to 1.
-  constexpr double kNear1 = 0.9;
-  // First order is not exact: what remains is measured again.
-  constexpr int kRounds = 2;
+LightFit FitLevelsOrLight(Clip& clip, const Background& background,
+                          const Shape& shape, LayerEvidence evidence,
+                          const FitLayersOptions& options) {
   LightFit best;
   best.evidence = std::move(evidence);
-  options.loss = LossOfLevels(ScaleOf(clip, best.gamma), background);
   best.fit = FitLayers(best.evidence.stack, shape, best.evidence.path.poses,
                        best.evidence.still, best.evidence.noise_dn, options);
-  double gamma = SeenGamma(best.fit);
-  if (clip.info().in_light || gamma > kClearlyNot1) return best;
-  double more = gamma;
-  for (int round = 0; round < kRounds && more < kNear1 && gamma >= kLeast;
-       ++round) {
+  if (clip.info().gamma_is_known) return best;
+  const GammaCost cost(clip, options.prior, best);
+  // The middle of an edge from black to white lies 1.3 blurs off at the least
+  // gamma. Sides that moved farther are those of a fit that went astray.
+  constexpr double kMostBlurs = 1.5;
+  const double most_px = kMostBlurs * best.fit.layers.blur;
+  std::vector<GammaTrial> trials = {cost.Judge(best)};
+  const auto attempt = [&](double log_gamma) {
     clip.cancellation().Check();
-    LightFit light = FitLight(clip, background, shape, gamma, best, options);
-    if (!IsBetterInLight(light.fit, best.fit, size)) break;
-    best = std::move(light);
-    more = SeenGamma(best.fit);
-    gamma *= more;
+    LightFit light =
+        FitLight(clip, background, shape, std::exp(log_gamma), best, options);
+    const GammaTrial trial = cost.Judge(light);
+    if (std::max(std::abs(trial.half_long_px - trials[0].half_long_px),
+                 std::abs(trial.half_short_px - trials[0].half_short_px)) >
+        most_px) {
+      return;
+    }
+    const double least = FindCheapest(trials)->cost;
+    trials.push_back(trial);
+    if (trial.cost < least) best = std::move(light);
+  };
+  // Half way to what most cameras have that are not linear: IEC 61966-2-1 and
+  // ITU-R BT.709 are near 0.45.
+  attempt(std::log(0.7));
+  if (best.gamma) attempt(std::log(0.45));
+  if (trials.size() > 2) {
+    const double lowest = FindLeastLogGamma(trials);
+    constexpr double kNear = 0.1;  // a gamma that was tried does as well
+    if (std::none_of(trials.begin(), trials.end(), [&](const GammaTrial& at) {
+          return std::abs(at.log_gamma - lowest) < kNear;
+        })) {
+      attempt(lowest);
+    }
   }
+  if (trials.size() < 2) return best;
+  const auto [low, high] =
+      std::minmax_element(trials.begin(), trials.end(),
+                          [](const GammaTrial& a, const GammaTrial& b) {
+                            return a.log_gamma < b.log_gamma;
+                          });
+  const double share =
+      LogGammaUncertainty(trials) / (high->log_gamma - low->log_gamma);
+  best.u_long_px = std::abs(high->half_long_px - low->half_long_px) * share;
+  best.u_short_px = std::abs(high->half_short_px - low->half_short_px) * share;
   return best;
 }
 

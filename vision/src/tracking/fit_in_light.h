@@ -6,6 +6,7 @@
 
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "layers/fit_layers.h"
 #include "touchdown/vision/background/background.h"
@@ -21,27 +22,39 @@ struct LightFit {
   std::unique_ptr<Clip> light;  // a view of the clip, with gamma alone
   LayerEvidence evidence;
   layers::LayerFit fit;
+  // Of the half sides: what they owe to a gamma that is not known better.
+  double u_long_px = 0.0;
+  double u_short_px = 0.0;
 };
+
+// What a gamma costs: half of chi2, as a log likelihood has it; and the half
+// sides that go with it.
+struct GammaTrial {
+  double log_gamma = 0.0;
+  double cost = 0.0;
+  double half_long_px = 0.0;
+  double half_short_px = 0.0;
+};
+
+// Where the parabola through three trials is least.
+double FindLeastLogGamma(const std::vector<GammaTrial>& trials);
+
+// Standard uncertainty of log gamma: of the parabola around the trial that
+// costs least. A camera is as often linear (spike) as of any gamma down to the
+// least, g (slab): where levels cost least, and more by k per unit of
+// x = -log gamma, the mean square of x is 2 / (k^3 log(1 / g)).
+double LogGammaUncertainty(std::vector<GammaTrial> trials);
 
 // By how much outlines lie beside a stated size, px, beyond its own u: the
 // larger of both sides', and of sides that a texture holds.
 double OutlinesBeside(const layers::LayerFit& fit, const BodySize& size);
 
-// Whether light explains the levels (LayerFit::loss) better than what was
-// fitted before while the outlines lie no farther beside a stated size, or
-// about as well while they lie much nearer.
-bool IsBetterInLight(const layers::LayerFit& light,
-                     const layers::LayerFit& before,
-                     const std::optional<BodySize>& size);
-
-// Levels first. Where their outlines show a gamma that matters
-// (LayerFit::curve) light is fitted from there, and once more where the
-// outlines still show one, as long as that is better. Of a clip that is in
-// light already levels are all. `evidence`: of the levels.
+// Layers of the levels, or of the light of the gamma that explains the levels
+// and the sides that are known (options.prior) best: a profile likelihood.
+// Of a clip whose gamma is known levels are all. `evidence`: of the levels.
 // Throws what Clip::Read throws.
-LightFit FitLevelsThenLight(Clip& clip, const Background& background,
-                            const layers::Shape& shape, LayerEvidence evidence,
-                            const std::optional<BodySize>& size,
-                            layers::FitLayersOptions options);
+LightFit FitLevelsOrLight(Clip& clip, const Background& background,
+                          const layers::Shape& shape, LayerEvidence evidence,
+                          const layers::FitLayersOptions& options);
 
 }  // namespace touchdown::vision

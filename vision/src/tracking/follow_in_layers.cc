@@ -106,15 +106,13 @@ FitLayersOptions MakeLayerOptions(const Track& track, const Shape& shape,
   // px, of a half side that is stated: less would hold it where edges are not
   // of the model's shape. Not studied.
   constexpr double kLeastU = 0.02;
-  constexpr double kSeenU = 0.3;  // where only the outline tells
+  constexpr double kSeenU = 1.0;  // where only the outline tells
   u[layers::kLong] = size ? std::max(0.5 * size->long_px.u, kLeastU) : kSeenU;
   u[layers::kShort] = shape.disc ? 0.0
                       : size     ? std::max(0.5 * size->short_px.u, kLeastU)
                                  : kSeenU;
   u[layers::kSlopeX] = shape.disc ? 0.0 : kShadingU_dn;
   u[layers::kSlopeY] = u[layers::kSlopeX];
-  // A disc's curve and size look alike: only corners tell.
-  u[layers::kCurve] = shape.disc ? 0.0 : 1.0;
   constexpr double kAnyLevel_dn = 1e4;  // as good as free
   for (std::size_t k = 0; k < layers::kTerms; ++k) {
     u[layers::kQuadratic + k] = kAnyLevel_dn;
@@ -134,7 +132,6 @@ LayerPose Doubled(const LayerPose& pose) {
 FitLayersOptions HalvedOptions(const FitLayersOptions& options) {
   FitLayersOptions half = options;
   constexpr double kHalvingsBlur = 0.3;  // of two pixels taken as one
-  half.prior.u[layers::kCurve] = 0.0;    // of no use yet
   half.tolerance = 0.1;                  // only where to begin is wanted
   half.prior.value[layers::kBlur] =
       std::hypot(0.5 * options.prior.value[layers::kBlur], kHalvingsBlur);
@@ -274,10 +271,9 @@ void PrepareForTexture(const std::optional<BodySize>& size, const Shape& shape,
 }
 
 // The track's body as the layers have it, and what they say of all poses.
-// A size that was not stated stays that of the outlines: layers know it no
-// better, and the scale may hang on it.
-Track WithLayers(const Track& track, const LayerFit& fit,
+Track WithLayers(const Track& track, const LightFit& fitted,
                  const std::optional<BodySize>& size, bool turns) {
+  const LayerFit& fit = fitted.fit;
   Track out = track;
   out.poses.clear();
   out.step = 1;
@@ -291,7 +287,7 @@ Track WithLayers(const Track& track, const LayerFit& fit,
   out.body.shutter_fraction = fit.layers.exposure;
   const Shape& shape = fit.layers.shape;
   const double texture_px =
-      kCommonFactor * std::max(fit.common.u_x_px, fit.common.u_y_px);
+      kCommonFactor * std::max(fit.common.x_px, fit.common.y_px);
   const double beyond_px = size ? OutlinesBeside(fit, *size) : 0.0;
   out.body.u_texture_px =
       std::hypot(texture_px, PlaceUncertaintyBeside(beyond_px));
@@ -299,18 +295,25 @@ Track WithLayers(const Track& track, const LayerFit& fit,
   // Half of the sizes of raw clips of known truth were within 0.001, 0.95 of
   // them within 0.01.
   constexpr double kSizeU_px = 0.003;
-  const double u_size = std::hypot(kSizeU_px, kModel_px, texture_px);
+  // A side that is held is as uncertain as the place of the outline.
+  const auto u_side = [&](double u_px, double u_light_px) {
+    return std::hypot(std::hypot(kSizeU_px, kModel_px), u_light_px,
+                      u_px > 0.0 ? kCommonFactor * u_px : texture_px);
+  };
   if (turns) {
     out.body.u_common_angle_rad =
-        std::hypot(kCommonFactor * fit.common.u_angle_rad,
+        std::hypot(kCommonFactor * fit.common.angle_rad,
                    std::hypot(kModel_px, PlaceUncertaintyBeside(beyond_px)) /
                        shape.half_long);
   }
-  if (size && shape.disc) {
-    out.body.radius_px = {shape.half_long, u_size};
-  } else if (size) {
-    out.body.half_long_px = {shape.half_long, u_size};
-    out.body.half_short_px = {shape.half_short, u_size};
+  if (shape.disc) {
+    out.body.radius_px = {shape.half_long,
+                          u_side(fit.common.long_px, fitted.u_long_px)};
+  } else {
+    out.body.half_long_px = {shape.half_long,
+                             u_side(fit.common.long_px, fitted.u_long_px)};
+    out.body.half_short_px = {shape.half_short,
+                              u_side(fit.common.short_px, fitted.u_short_px)};
   }
   return out;
 }
@@ -440,8 +443,8 @@ core::Expected<Track> FollowInLayers(Clip& clip, const Background& background,
   const bool turning = shape.disc && TurnWithFace(shape, evidence, options);
   if (textured || turning) PrepareForTexture(size, shape, options, evidence);
   until.Check();
-  const LightFit fitted = FitLevelsThenLight(
-      clip, background, shape, std::move(evidence), size, options);
+  const LightFit fitted =
+      FitLevelsOrLight(clip, background, shape, std::move(evidence), options);
   until.Check();
   if (fitted.gamma) {
     track.body.gamma = fitted.gamma;
@@ -450,7 +453,7 @@ core::Expected<Track> FollowInLayers(Clip& clip, const Background& background,
                         MakeLightScale(clip.info().bit_depth, *fitted.gamma));
   }
   const LayerFit& fit = fitted.fit;
-  Track out = WithLayers(track, fit, size, options.turns);
+  Track out = WithLayers(track, fitted, size, options.turns);
   // Frames between the learned ones begin where they are expected.
   const core::PixelRect& box = fitted.evidence.box;
   const Track learned =

@@ -72,6 +72,7 @@ void PutInfo(Packed& to, const ClipInfo& info) {
   to.Put(info.height_px);
   to.Put(info.bit_depth);
   to.Put<std::uint8_t>(info.is_predicted);
+  to.Put<std::uint8_t>(info.gamma_is_known);
   to.Put<std::uint8_t>(info.has_colour);
   to.Put(info.frames);
   to.Put(info.first_camera_frame);
@@ -96,6 +97,7 @@ ClipInfo GetInfo(Packed& from) {
   info.height_px = from.Get<std::int32_t>();
   info.bit_depth = from.Get<std::int32_t>();
   info.is_predicted = from.GetFlag();
+  info.gamma_is_known = from.GetFlag();
   info.has_colour = from.GetFlag();
   info.frames = from.Get<std::int64_t>();
   info.first_camera_frame = from.Get<std::int64_t>();

@@ -387,6 +387,7 @@ class VideoClip final : public Clip {
       }
       chroma_.emplace(pixel_format, orientation, channel);
       info_.bit_depth = 8;
+      info_.gamma_is_known = true;
     }
     const AVRational aspect = Libav().av_guess_sample_aspect_ratio(
         source_.format.get(), source_.stream, frame_.get());

@@ -56,9 +56,11 @@ struct ClipInfo {
   std::int32_t bit_depth = 8;  // significant bits of a sample, 1..16
   // Whether frames are coded by what differs from others (H.264 is, MJPEG not).
   bool is_predicted = false;
-  bool in_light = false;    // levels were turned into light (linear_clip.h)
-  bool has_colour = false;  // colour differences can be read, too
-  std::int64_t frames = 0;  // that can be read
+  // Whether levels are light (linear_clip.h), or no power of it: a colour
+  // difference.
+  bool gamma_is_known = false;
+  bool has_colour = false;              // colour differences can be read, too
+  std::int64_t frames = 0;              // that can be read
   std::int64_t first_camera_frame = 0;  // the camera's own number of frame 0
   std::optional<SensorOrigin> sensor_origin;  // absent: the file does not say
   TimeBase time_base;
