@@ -112,7 +112,7 @@ class GammaCost {
   // Cauchy's, at four standard deviations of what the first fit left of the
   // levels.
   double MeasureLoss(const LightFit& fit) const {
-    constexpr double kCut = 4.0;
+    constexpr double kCut = 4.0;  // standard deviations, as in RobustWeight
     const double cut_dn = kCut * noise_dn_;
     const LightScale scale = ScaleOf(clip_, fit.gamma);
     return layers::MeanLoss(
