@@ -390,11 +390,14 @@ void AlignFrames(Clip& clip, const LayerEvidence& evidence, const LayerFit& fit,
 
 }  // namespace
 
+bool IsExplained(const Track& track) {
+  constexpr double kExplained = 1.2;  // median misfit
+  return MedianMisfit(track.poses) <= kExplained;
+}
+
 bool NeedsLayers(const Track& track, double most_covered) {
-  // Outlines that are this near to the noise leave nothing to be explained.
-  constexpr double kExplained = 1.2;
   return most_covered > kUntouched || !track.known_background ||
-         MedianMisfit(track.poses) > kExplained;
+         !IsExplained(track);
 }
 
 bool ShowsMarks(Clip& clip, const Background& background, const Track& track) {

@@ -537,13 +537,17 @@ core::Expected<TrackResult> FollowBody(Clip& clip,
                          first->rough_starts && pass + 1 == passes, track);
     if (!cut.empty()) warning = cut;
   }
-  // An outline of a ball that nobody measured is a circle whatever its face
-  // shows.
-  const bool is_told = options.size || options.measured ||
-                       track.body.kind == core::BodyKind::kRectangle;
-  if (is_told &&
-      (NeedsLayers(track, covers.most) ||
-       ShowsMarks(clip, result.background, track)) &&
+  // Sizes that nobody told are those of outlines, as long as these explain the
+  // pictures; an outline of a ball is a circle whatever its face shows.
+  const bool is_told =
+      options.size ||
+      (options.measured && options.kind == core::BodyKind::kSphere);
+  const bool needs_layers =
+      is_told ? NeedsLayers(track, covers.most) ||
+                    ShowsMarks(clip, result.background, track)
+              : track.body.kind == core::BodyKind::kRectangle &&
+                    !IsExplained(track);
+  if (needs_layers &&
       TakeLayers(clip, options, covers.most, std::move(layered), result)) {
     whole_px = 0.0;
   } else {
