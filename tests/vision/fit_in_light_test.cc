@@ -70,7 +70,7 @@ TEST(LogGammaUncertainty, OfAParabolaWhateverTheOrder) {
               0.15, 1e-12);
 }
 
-// Mean square of x over 1 / (1 + (slab's share)), by a sum over the slab.
+// The mean square of x by a sum over the slab.
 TEST(LogGammaUncertainty, OfALinearCameraIsThatOfTheSlab) {
   const double slab = -std::log(0.3);
   for (const double steep : {8.0, 20.0}) {

@@ -123,8 +123,8 @@ class GammaCost {
         });
   }
 
-  // Of a side that lies beside what is known of it; Cauchy's, since sizes are
-  // misstated, too: a gamma that makes one fit must not cost the pixels much.
+  // Of a side that lies beside what is known of it. Cauchy's: a misstated size
+  // must not outweigh what the pixels say of gamma.
   double CostOfSide(layers::SharedParameter side, double half_px) const {
     // What outlines of flat bodies are off.
     constexpr double kOutline_px = 0.03;
