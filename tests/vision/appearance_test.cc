@@ -138,13 +138,8 @@ TEST_P(Appearances, AHighlightDrawsNoOutlineAside) {
     if (GetParam() == core::BodyKind::kSphere) {
       EXPECT_NEAR(body.radius_px.value, 10.0, kGood_px) << level;
     } else {
-      // Nobody stated the block's size, and a texture hides outlines.
-      EXPECT_NEAR(body.half_long_px.value, 15.0,
-                  kGood_px + 3.0 * body.half_long_px.u)
-          << level;
-      EXPECT_NEAR(body.half_short_px.value, 7.0,
-                  kGood_px + 3.0 * body.half_short_px.u)
-          << level;
+      EXPECT_NEAR(body.half_long_px.value, 15.0, kGood_px) << level;
+      EXPECT_NEAR(body.half_short_px.value, 7.0, kGood_px) << level;
     }
     double x = 0.0;
     double y = 0.0;
