@@ -75,11 +75,6 @@ double PositionOnLine(const GroundLine& ground, core::PixelPoint p) {
          (p.y_px - ground.reference.y_px) * std::sin(angle);
 }
 
-double HeightUncertainty(const GroundLine& ground, core::PixelPoint p) {
-  return std::hypot(ground.u_offset_px,
-                    ground.u_angle_rad * PositionOnLine(ground, p));
-}
-
 namespace {
 
 // The line through p and q, known as well as `like`.

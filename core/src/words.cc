@@ -90,9 +90,6 @@ std::optional<MotionState> ParseMotionState(std::string_view word) {
 std::optional<Origin> ParseOrigin(std::string_view word) {
   return FindValue(kOrigins, word);
 }
-std::optional<Verdict> ParseVerdict(std::string_view word) {
-  return FindValue(kVerdicts, word);
-}
 
 bool IsNotBounce(MotionState state) {
   return state != MotionState::kBounce && state != MotionState::kUndecided;

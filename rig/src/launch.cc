@@ -49,14 +49,6 @@ double IdealLaunchSpeed(double compression_m, double stiffness_n_per_m,
   return compression_m * std::sqrt(stiffness_n_per_m / mass_kg);
 }
 
-double IdealCompression(double speed_mps, double stiffness_n_per_m,
-                        double mass_kg) {
-  core::RequireNotNegative("speed_mps", speed_mps);
-  core::RequirePositive("stiffness_n_per_m", stiffness_n_per_m);
-  core::RequirePositive("mass_kg", mass_kg);
-  return speed_mps * std::sqrt(mass_kg / stiffness_n_per_m);
-}
-
 core::Expected<Muzzle> LaunchSpeed(const Launch& launch, double compression_m) {
   ValidateLaunch(launch);
   core::RequireNotNegative("compression_m", compression_m);

@@ -167,12 +167,6 @@ double WahlFactor(double index) {
   return (4.0 * index - 1.0) / (4.0 * index - 4.0) + 0.615 / index;
 }
 
-double MaxShearStress(const Spring& spring, double compression_m) {
-  core::RequireNotNegative("compression_m", compression_m);
-  return WahlFactor(SpringIndex(spring)) *
-         UncorrectedShear(spring, compression_m);
-}
-
 double SolidLength(const Spring& spring) {
   ValidateSpring(spring);
   return spring.total_coils * spring.wire_diameter_m;

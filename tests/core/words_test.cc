@@ -21,9 +21,6 @@ TEST(Words, ParseInvertsName) {
     EXPECT_EQ(ParseMotionState(Name(k)), k);
   for (const auto k : {Origin::kRecorded, Origin::kSimulated, Origin::kManual})
     EXPECT_EQ(ParseOrigin(Name(k)), k);
-  for (const auto k :
-       {Verdict::kConfirmed, Verdict::kContradicted, Verdict::kInconclusive})
-    EXPECT_EQ(ParseVerdict(Name(k)), k);
   EXPECT_EQ(ParseBodyKind("cube"), std::nullopt);
   EXPECT_EQ(ParseMotionState(""), std::nullopt);
 }

@@ -28,7 +28,9 @@ SegmentationOptions OptionsFor(const Filming& filming) {
 // The initials of the stretches' kinds, in order.
 std::string KindsOf(const std::vector<Stretch>& stretches) {
   std::string kinds;
-  for (const Stretch& s : stretches) kinds += Name(s.kind).front();
+  for (const Stretch& s : stretches) {
+    kinds += "fsco"[static_cast<int>(s.kind)];
+  }
   return kinds;
 }
 

@@ -44,9 +44,6 @@ double ImageAngle(const GroundLine& ground);
 // Signed distance of `p` above the line (towards smaller image y), in px.
 double HeightAboveLine(const GroundLine& ground, core::PixelPoint p);
 
-// Standard uncertainty of the line's height at the foot of `p`, in px.
-double HeightUncertainty(const GroundLine& ground, core::PixelPoint p);
-
 // Position of the foot of `p` along the line, from `reference`, in px.
 double PositionOnLine(const GroundLine& ground, core::PixelPoint p);
 

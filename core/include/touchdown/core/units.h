@@ -15,7 +15,6 @@ namespace touchdown::core {
 
 inline constexpr double kMillimetre = 1e-3;                  // m
 inline constexpr double kDegree = std::numbers::pi / 180.0;  // rad
-inline constexpr double kMillisecond = 1e-3;                 // s
 
 // Standard acceleration of free fall, m/s^2 (CGPM 1901, exact by definition).
 // Local gravity differs by up to 0.3 %; commands accept --gravity.
@@ -27,9 +26,6 @@ constexpr double operator""_mm(long double v) {
 }
 constexpr double operator""_deg(long double v) {
   return static_cast<double>(v) * kDegree;
-}
-constexpr double operator""_ms(long double v) {
-  return static_cast<double>(v) * kMillisecond;
 }
 }  // namespace literals
 

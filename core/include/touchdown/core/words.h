@@ -1,6 +1,6 @@
 // The words of the field, with the spelling used in commands, JSON, columns and
-// reports. Each enumeration has Name() and a Parse...() that returns nothing
-// for an unknown word.
+// reports. Each enumeration has Name(); those that are read have a Parse...()
+// that returns nothing for an unknown word.
 #pragma once
 
 #include <optional>
@@ -55,7 +55,6 @@ std::optional<AngleKind> ParseAngleKind(std::string_view word);
 std::optional<Corner> ParseCorner(std::string_view word);
 std::optional<MotionState> ParseMotionState(std::string_view word);
 std::optional<Origin> ParseOrigin(std::string_view word);
-std::optional<Verdict> ParseVerdict(std::string_view word);
 
 // True for slide, roll-slide, roll, stick and stays-down: what a table in the
 // paper's two words prints as "slide".

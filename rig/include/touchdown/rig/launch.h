@@ -33,10 +33,6 @@ namespace touchdown::rig {
 double IdealLaunchSpeed(double compression_m, double stiffness_n_per_m,
                         double mass_kg);
 
-// Eq. (10) solved for X: the compression for a wanted speed >= 0.
-double IdealCompression(double speed_mps, double stiffness_n_per_m,
-                        double mass_kg);
-
 struct Launch {
   double stiffness_n_per_m = 0.0;  // H, all springs together; > 0
   double mass_kg = 0.0;            // m, of the body (and of a sled); > 0

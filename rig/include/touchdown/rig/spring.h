@@ -54,10 +54,6 @@ double SpringIndex(const Spring& spring);
 // Wahl's factor for curvature and direct shear, (4C-1)/(4C-4) + 0.615/C, C > 1.
 double WahlFactor(double index);
 
-// Greatest shear stress in the wire at `compression_m` >= 0 from free length:
-// K 8 F D_m / (pi d^3), F = H_1 * compression, Pa. Static; no fatigue.
-double MaxShearStress(const Spring& spring, double compression_m);
-
 // Coil on coil: n_t d, m (ends squared and ground).
 double SolidLength(const Spring& spring);
 
@@ -95,9 +91,11 @@ struct SpringReport {
   double stiffness_of_one_n_per_m = 0.0;
   double stiffness_n_per_m = 0.0;
   double stiffness_as_printed_n_per_m = 0.0;
-  double force_of_one_n = 0.0;        // at the given compression
-  double max_shear_pa = 0.0;          // with Wahl's factor
-  double uncorrected_shear_pa = 0.0;  // without
+  double force_of_one_n = 0.0;  // at the given compression
+  // Greatest shear stress in the wire: K 8 F D_m / (pi d^3), F = H_1 * the
+  // compression; static, no fatigue.
+  double max_shear_pa = 0.0;          // with Wahl's factor K
+  double uncorrected_shear_pa = 0.0;  // with K = 1
   double solid_length_m = 0.0;
   double mass_kg = 0.0;  // of all springs
   double surge_hz = 0.0;

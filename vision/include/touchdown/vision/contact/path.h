@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <string_view>
 
 namespace touchdown::vision {
 
@@ -13,7 +12,6 @@ enum class StretchKind {
   kOther,      // carried by a hand or a ramp before its first flight, caught or
                // stopped by something else after its last
 };
-std::string_view Name(StretchKind kind);  // "flight", "supported", ...
 
 struct PathStretch {
   StretchKind kind = StretchKind::kOther;
