@@ -7,6 +7,7 @@
 #include <limits>
 #include <random>
 #include <string>
+#include <utility>
 
 #include "tests/support/csv.h"
 #include "tests/support/shared_data.h"
@@ -264,10 +265,12 @@ TEST(SolveContact, MarginsReachTheSignChange) {
 }
 
 TEST(PainleveWedge, TouchesAtTheCriticalFriction) {
-  EXPECT_NEAR(CriticalFriction(3.0), 4.0 / 3.0, 1e-15);
-  EXPECT_NEAR(CriticalFriction(2.5), 1.49666295470957640, 1e-15);
-  EXPECT_NEAR(CriticalFriction(1.0), 2.0 * std::sqrt(2.0), 1e-15);
-  EXPECT_FALSE(PainleveWedge(3.0, 1.33).exists);
+  for (const auto& [kappa, critical] :
+       {std::pair{3.0, 4.0 / 3.0}, std::pair{2.5, 1.49666295470957640},
+        std::pair{1.0, 2.0 * std::sqrt(2.0)}}) {
+    EXPECT_FALSE(PainleveWedge(kappa, critical - 1e-14).exists) << kappa;
+    EXPECT_TRUE(PainleveWedge(kappa, critical + 1e-14).exists) << kappa;
+  }
   const Wedge wedge = PainleveWedge(3.0, 1.5);
   ASSERT_TRUE(wedge.exists);
   for (const double edge : {wedge.low_rad, wedge.high_rad}) {
@@ -373,7 +376,7 @@ TEST(SolveContact, MirrorSymmetry) {
     const ContactProblem p = random.Next();
     ContactProblem mirrored = p;
     mirrored.alpha.cos = -p.alpha.cos;
-    mirrored.slip = Opposite(p.slip);
+    mirrored.slip = static_cast<Slip>(-Sign(p.slip));
     mirrored.omega_rad_per_s = -p.omega_rad_per_s;
     const ContactResult a = SolveContact(p);
     const ContactResult b = SolveContact(mirrored);

@@ -109,31 +109,12 @@ TEST(SolveFlatContact, AgreesWithEnumeration) {
   }
 }
 
-TEST(SolveFlatImpact, WithoutFrictionItDoesNotTurn) {
-  const FlatProblem p{.length_m = 0.1, .height_m = 0.04, .mass_kg = 0.5};
-  const auto r = SolveFlatImpact(p, 2.0, 0.25);
-  ASSERT_TRUE(r);
-  EXPECT_EQ(r->feet, Feet::kBoth);
-  EXPECT_DOUBLE_EQ(r->rear_mps, 0.5);
-  EXPECT_DOUBLE_EQ(r->front_mps, 0.5);
-  EXPECT_DOUBLE_EQ(r->rear_ns + r->front_ns, 0.5 * 2.5);
-}
-
-TEST(SolveFlatImpact, FrictionTipsATallBody) {
-  const FlatProblem p{.length_m = 0.1, .height_m = 0.2, .mu = 0.8};
-  const auto r = SolveFlatImpact(p, 1.0, 0.5);
-  ASSERT_TRUE(r);
-  EXPECT_EQ(r->feet, Feet::kFront);
-  EXPECT_EQ(r->rear_ns, 0.0);
-  EXPECT_DOUBLE_EQ(r->front_mps, 0.5);
-  EXPECT_GT(r->rear_mps, 0.5);
-}
-
 TEST(SolveFlatContact, RefusesWhatCannotBe) {
   EXPECT_THROW(SolveFlatContact({.length_m = 0.0, .height_m = 0.1}),
                std::invalid_argument);
-  EXPECT_THROW(SolveFlatImpact({.length_m = 0.1, .height_m = 0.1}, -1.0, 0.5),
-               std::invalid_argument);
+  EXPECT_THROW(
+      SolveFlatContact({.length_m = 0.1, .height_m = 0.1, .gravity_mps2 = 0.0}),
+      std::invalid_argument);
 }
 
 }  // namespace

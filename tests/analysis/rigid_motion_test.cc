@@ -33,6 +33,15 @@ RigidMotionProblem BlockProblem() {
   return p;
 }
 
+// Energy per unit mass, (v^2 + k^2 w^2)/2 + g y.
+double EnergyPerMass(const RigidMotion& motion, const BodyState& state) {
+  const double k = motion.gyration_radius_m;
+  const double spin = k * state.omega_rad_per_s;
+  return 0.5 * (state.vx_mps * state.vx_mps + state.vy_mps * state.vy_mps +
+                spin * spin) +
+         kG * state.centre.y_m;
+}
+
 TEST(RigidMotion, FreeFlightIsTheParabola) {
   RigidMotionProblem p = BlockProblem();
   p.start = {0.25, {1.0, 2.0}, 0.3, 1.5, 2.5, 7.0};

@@ -57,20 +57,4 @@ constexpr std::array<BoundaryModelCard, 5> kCards = {{
 
 std::span<const BoundaryModelCard> BoundaryModelCards() { return kCards; }
 
-const BoundaryModelCard& FindCard(BoundaryModel model) {
-  for (const BoundaryModelCard& card : kCards) {
-    if (card.model == model) return card;
-  }
-  return kCards[0];
-}
-
-std::string_view Name(BoundaryModel model) { return FindCard(model).name; }
-
-std::optional<BoundaryModel> ParseBoundaryModel(std::string_view word) {
-  for (const BoundaryModelCard& card : kCards) {
-    if (card.name == word) return card.model;
-  }
-  return std::nullopt;
-}
-
 }  // namespace touchdown::analysis

@@ -339,7 +339,6 @@ BoundaryAnswer EvaluateBoundary(BoundaryModel model,
         "number of draws is {}, must be at least 1", options.n_draws));
   }
   BoundaryAnswer out;
-  out.model = model;
   out.angle_kind = ModelAngleKind(model, inputs);
   out.boundary_rad = BoundaryAngle(model, inputs);
   out.ranges = ListRanges(model, inputs, out.boundary_rad);
@@ -356,18 +355,6 @@ BoundaryAnswer EvaluateBoundary(BoundaryModel model,
   }
   if (out.boundary_rad) PropagateFirstOrder(model, inputs, out);
   PropagateByDraws(model, inputs, engine, options.n_draws, out.uncertainty);
-  return out;
-}
-
-core::Measured BoundaryAnswer::Value() const {
-  if (!boundary_rad) return AbsentBecause(boundary_rad.error().reason);
-  core::Estimate out{*boundary_rad, uncertainty.first_order_u_rad,
-                     std::nullopt};
-  if (!uncertainty.first_order_is_valid && uncertainty.u_rad) {
-    out.u = *uncertainty.u_rad;
-    out.interval95 =
-        core::Interval{*uncertainty.low_rad, *uncertainty.high_rad};
-  }
   return out;
 }
 

@@ -209,11 +209,6 @@ QuickContact SolveSlidingContact(const ContactProblem& p) {
   return {regime, std::max(0.0, -b / a)};
 }
 
-double CriticalFriction(double kappa) {
-  core::RequirePositive("kappa", kappa);
-  return 2.0 * std::sqrt(1.0 + kappa) / kappa;
-}
-
 Wedge PainleveWedge(double kappa, double mu) {
   core::RequirePositive("kappa", kappa);
   core::RequireNotNegative("mu", mu);

@@ -12,7 +12,7 @@ namespace {
 // of these.
 constexpr Wide kWithinRounding = 8 * 0x1p-53L;
 
-// One foot's share per unit of drive (g, or (1 + e) v).
+// Each foot's share per unit of g.
 struct Shares {
   Feet feet = Feet::kBoth;
   Wide rear = 0, front = 0;            // normal reaction / m
@@ -71,13 +71,13 @@ void CheckFlatProblem(const FlatProblem& p) {
   core::RequirePositive("height", p.height_m, "m");
   core::RequireNotNegative("mu", p.mu);
   core::RequirePositive("mass", p.mass_kg, "kg");
+  core::RequirePositive("gravity", p.gravity_mps2, "m/s^2");
 }
 
 }  // namespace
 
 FlatResult SolveFlatContact(const FlatProblem& problem) {
   CheckFlatProblem(problem);
-  core::RequirePositive("gravity", problem.gravity_mps2, "m/s^2");
   const Flush flush(problem);
   FlatResult out;
   out.m_rr = Narrow(flush.m_rr);
@@ -100,27 +100,6 @@ FlatResult SolveFlatContact(const FlatProblem& problem) {
         Narrow(problem.gravity_mps2 * shares->front_rise)};
   }
   return out;
-}
-
-std::optional<FlatImpactSolution> SolveFlatImpact(const FlatProblem& problem,
-                                                  double approach_mps,
-                                                  double restitution) {
-  CheckFlatProblem(problem);
-  core::RequirePositive("approach speed", approach_mps, "m/s");
-  core::RequireInRange("restitution", restitution, 0.0, 1.0);
-  const auto shares = Flush(problem).Solve();
-  if (!shares) return std::nullopt;
-  const Wide rebound = static_cast<Wide>(restitution) * approach_mps;
-  const Wide change = approach_mps + rebound;
-  const Wide momentum = problem.mass_kg * change;
-  return FlatImpactSolution{
-      shares->feet,
-      Narrow(momentum * shares->rear),
-      Narrow(momentum * shares->front),
-      Narrow(-Sign(problem.slip) * static_cast<Wide>(problem.mu) * momentum *
-             (shares->rear + shares->front)),
-      Narrow(rebound + change * shares->rear_rise),
-      Narrow(rebound + change * shares->front_rise)};
 }
 
 std::string_view Name(Feet feet) {

@@ -31,7 +31,6 @@ class Simulator {
   explicit Simulator(const RigidMotionProblem& problem)
       : p_(problem), outline_(problem.body), state_(problem.start) {
     motion_.body = problem.body;
-    motion_.gravity_mps2 = problem.gravity_mps2;
     motion_.end_s = problem.end_s;
     motion_.gyration_radius_m = problem.gyration_radius_m > 0.0
                                     ? problem.gyration_radius_m
@@ -400,14 +399,6 @@ std::optional<TouchdownTruth> FirstTouchdown(const RigidMotion& motion) {
         std::atan2(-event.offset_y_m, std::abs(event.offset_x_m));
   }
   return truth;
-}
-
-double EnergyPerMass(const RigidMotion& motion, const BodyState& state) {
-  const double k = motion.gyration_radius_m;
-  const double spin = k * state.omega_rad_per_s;
-  return 0.5 * (state.vx_mps * state.vx_mps + state.vy_mps * state.vy_mps +
-                spin * spin) +
-         motion.gravity_mps2 * state.centre.y_m;
 }
 
 }  // namespace touchdown::analysis

@@ -51,9 +51,6 @@ struct BoundaryModelCard {
   bool is_physics;               // false: a quotation or a replication
 };
 std::span<const BoundaryModelCard> BoundaryModelCards();
-const BoundaryModelCard& FindCard(BoundaryModel model);
-std::string_view Name(BoundaryModel model);
-std::optional<BoundaryModel> ParseBoundaryModel(std::string_view word);
 
 // Every model takes what it needs of these. Where u > 0 it is propagated.
 struct BoundaryInputs {
@@ -112,17 +109,12 @@ struct BoundaryUncertainty {
 };
 
 struct BoundaryAnswer {
-  BoundaryModel model = BoundaryModel::kPublished;
   core::AngleKind angle_kind = core::AngleKind::kRadius;
   core::Expected<double> boundary_rad = core::AbsentBecause("not evaluated");
   std::vector<AngleRange> ranges;
   std::vector<Sensitivity> sensitivities;  // of what has u > 0 and matters
   BoundaryUncertainty uncertainty;
   std::vector<std::string> notes;  // what a reader must know of this answer
-
-  // The model's value as an Estimate: first order where valid, else mean and
-  // quantiles of the draws. Absent where there is none.
-  core::Measured Value() const;
 };
 
 struct BoundaryOptions {

@@ -150,14 +150,10 @@ struct QuickContact {
 };
 QuickContact SolveSlidingContact(const ContactProblem& problem);
 
-// The friction above which A_hat < 0 is possible (leading corner):
-// mu_c = 2 sqrt(1 + kappa) / kappa, at tan alpha = sqrt(1 + kappa); 4/3 at
-// 63.43 deg for a rectangle. kappa > 0.
-double CriticalFriction(double kappa);
-
 // The wedge of alpha in which A_hat < 0 on the leading corner; its edges are
 // the roots of tan^2 a - kappa mu tan a + 1 + kappa = 0. `exists` is false for
-// mu < CriticalFriction(kappa).
+// mu < mu_c = 2 sqrt(1 + kappa) / kappa, where both edges meet at tan alpha =
+// sqrt(1 + kappa); 4/3 at 63.43 deg for a rectangle. kappa > 0.
 struct Wedge {
   bool exists = false;
   double low_rad = 0.0;

@@ -27,7 +27,6 @@ namespace touchdown::analysis {
 enum class Slip : int { kTrailing = -1, kNone = 0, kLeading = 1 };
 
 constexpr int Sign(Slip slip) { return static_cast<int>(slip); }
-constexpr Slip Opposite(Slip slip) { return static_cast<Slip>(-Sign(slip)); }
 
 // Slip of a point that moves at `tangential_mps` along x.
 constexpr Slip ClassifySlip(double tangential_mps) {

@@ -62,21 +62,4 @@ struct FlatResult {
 // Throws std::invalid_argument for an argument outside its range.
 FlatResult SolveFlatContact(const FlatProblem& problem);
 
-// Flush impact at normal speed `approach_mps` (> 0, downwards) with Newton's
-// restitution e of each foot that carries: the same M with (1 + e) v for g.
-// Without friction the body leaves with e v and does not turn.
-struct FlatImpactSolution {
-  Feet feet = Feet::kBoth;
-  double rear_ns = 0.0;        // normal impulses, N s
-  double front_ns = 0.0;       //
-  double tangential_ns = 0.0;  // sum of both feet, on the body
-  double rear_mps = 0.0;       // normal velocities of the feet after
-  double front_mps = 0.0;
-};
-
-// Nothing where the impact is inconsistent. `problem.gravity_mps2` is unused.
-std::optional<FlatImpactSolution> SolveFlatImpact(const FlatProblem& problem,
-                                                  double approach_mps,
-                                                  double restitution);
-
 }  // namespace touchdown::analysis

@@ -99,7 +99,6 @@ struct MotionEvent {
 struct RigidMotion {
   core::Body body;
   double gyration_radius_m = 0.0;
-  double gravity_mps2 = 0.0;
   double end_s = 0.0;
   std::vector<Stretch> stretches;   // at least one
   std::vector<MotionEvent> events;  // hops are not listed
@@ -141,8 +140,5 @@ struct TouchdownTruth {
   double contact_vy_after_mps = 0.0;
 };
 std::optional<TouchdownTruth> FirstTouchdown(const RigidMotion& motion);
-
-// Energy per unit mass, (v^2 + k^2 w^2)/2 + g y.
-double EnergyPerMass(const RigidMotion& motion, const BodyState& state);
 
 }  // namespace touchdown::analysis
