@@ -36,7 +36,7 @@ std::vector<Observation> Trials(const std::vector<double>& x,
 // One prior and no lapses: what the reference numbers were computed with.
 BoundaryFitOptions NoLapse(double median_deg = 2.0, double log_sd = 1.5) {
   BoundaryFitOptions options;
-  options.lapse_rule = LapseRule::kNever;
+  options.lapse_gain = HUGE_VAL;
   options.cautious_scatter.reset();
   options.sharp_scatter.reset();
   options.scatter = {median_deg * kDegree, log_sd};
@@ -134,7 +134,7 @@ TEST(FitBoundary, EveryPaperRowOfTheReference) {
     BoundaryFitOptions options = NoLapse(std::stod(name.substr(prior + 3)),
                                          std::stod(name.substr(comma + 1)));
     if (const double l = std::stod(name.substr(lapse + 6)); l > 0.0) {
-      options.lapse_rule = LapseRule::kAlways;
+      options.lapse_gain = -HUGE_VAL;
       options.lapse = l;
     }
     const auto p = FitBoundary(
@@ -237,7 +237,7 @@ TEST(FitBoundary, HardCases) {
     for (const double v : List(rows[i][2])) y.push_back(v > 0.5);
     BoundaryFitOptions options = NoLapse();
     if (const double lapse = std::stod(rows[i][4]); lapse > 0.0) {
-      options.lapse_rule = LapseRule::kAlways;
+      options.lapse_gain = -HUGE_VAL;
       options.lapse = lapse;
     }
     auto p = FitBoundary(Trials(List(rows[i][1]), y, std::stod(rows[i][3])),

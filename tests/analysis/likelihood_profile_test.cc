@@ -42,7 +42,6 @@ TEST(ProfileLikelihood, Neyer1994) {
   EXPECT_TRUE(p.has_estimate);
   EXPECT_NEAR(p.estimate_rad, 5.392185, 2e-6);
   EXPECT_NEAR(p.scatter_rad, 1.041225, 2e-6);
-  EXPECT_NEAR(p.max_log_likelihood, -5.739762, 1e-6);
   EXPECT_NEAR(p.interval95_rad.low, 4.48706, 1e-5);
   EXPECT_NEAR(p.interval95_rad.high, 6.52965, 1e-5);
   EXPECT_FALSE(p.open_low);
@@ -224,7 +223,7 @@ TEST(ProfileLikelihood, AnswersFollowShiftAndScale) {
 
 TEST(ProfileLikelihood, AStartThatIsAlsoATrialHidesNothing) {
   // Gorla et al. (2017), Table 9: the bracket's end, 36, is also a level of the
-  // search. Reference (R glm): 36.529132, 2.111725, -9.236713.
+  // search. Reference (R glm): 36.529132, 2.111725.
   const double x[] = {36, 35, 36, 37, 38, 39, 38, 37,
                       38, 37, 36, 35, 36, 37, 36};
   const bool y[] = {true, false, false, false, false, true, true, false,
@@ -236,7 +235,6 @@ TEST(ProfileLikelihood, AStartThatIsAlsoATrialHidesNothing) {
   const auto p = ProfileLikelihood(trials, Wide(0, 90, 0.01, 900));
   EXPECT_NEAR(p.estimate_rad, 36.529132, 1e-4);
   EXPECT_NEAR(p.scatter_rad, 2.111725, 1e-4);
-  EXPECT_NEAR(p.max_log_likelihood, -9.236713, 1e-6);
 }
 
 TEST(ProfileLikelihood, RefusesImpossibleRanges) {

@@ -34,7 +34,7 @@ TEST(ChooseNextAngle, ExpectedSdIsThatOfTheTwoFutures) {
     trials.push_back(Observe(x * kDegree, 0.2 * kDegree, x > 10 || x == 8.0));
   }
   BoundaryFitOptions fit;
-  fit.lapse_rule = LapseRule::kNever;
+  fit.lapse_gain = HUGE_VAL;
   NextAngleOptions options;
   options.spread_rad = 0.0;
   options.set_u_rad = 0.3 * kDegree;

@@ -12,11 +12,8 @@
 namespace touchdown::analysis {
 namespace {
 
-bool PredictsBounce(double angle_rad, double boundary_rad, TieRule rule) {
-  if (std::abs(angle_rad - boundary_rad) <= kSameAngle_rad) {
-    return rule == TieRule::kBouncesAtBoundary;
-  }
-  return angle_rad > boundary_rad;
+bool PredictsBounce(double angle_rad, double boundary_rad) {
+  return angle_rad > boundary_rad + kSameAngle_rad;
 }
 
 void Tally(ConfusionMatrix& matrix, bool predicted_bounce, bool bounced) {
@@ -27,20 +24,19 @@ void Tally(ConfusionMatrix& matrix, bool predicted_bounce, bool bounced) {
   }
 }
 
-int CountRight(std::span<const Observation> observations, double boundary_rad,
-               TieRule rule) {
+int CountRight(std::span<const Observation> observations, double boundary_rad) {
   int right = 0;
   for (const Observation& o : observations) {
     if (o.outcome == Outcome::kUndecided) continue;
     const bool bounced = o.outcome == Outcome::kBounce;
-    right += PredictsBounce(o.angle_rad, boundary_rad, rule) == bounced ? 1 : 0;
+    right += PredictsBounce(o.angle_rad, boundary_rad) == bounced ? 1 : 0;
   }
   return right;
 }
 
 // Agreement is constant between neighbouring angles of decided trials, so one
 // probe in each gap tells it. The walk goes outwards from the theory's value.
-void FindSameAgreement(std::span<const Observation> observations, TieRule rule,
+void FindSameAgreement(std::span<const Observation> observations,
                        Agreement& out) {
   std::vector<double> angles;
   for (const Observation& o : observations) {
@@ -54,10 +50,10 @@ void FindSameAgreement(std::span<const Observation> observations, TieRule rule,
   if (angles.empty()) return;
   const int right = out.all.right();
   // `below` counts the angles whose prediction is "bounces no more": gap k lies
-  // between angles[k-1] and angles[k], the tied angle on the side of the rule.
+  // between angles[k-1] and angles[k], a tied angle below it.
   const double theory = out.theory.boundary_rad;
   std::size_t gap = 0;
-  while (gap < angles.size() && !PredictsBounce(angles[gap], theory, rule)) {
+  while (gap < angles.size() && !PredictsBounce(angles[gap], theory)) {
     ++gap;
   }
   const auto probe = [&](std::size_t k) {
@@ -66,12 +62,12 @@ void FindSameAgreement(std::span<const Observation> observations, TieRule rule,
     return (angles[k - 1] + angles[k]) / 2;
   };
   std::size_t low = gap;
-  while (low > 0 && CountRight(observations, probe(low - 1), rule) == right) {
+  while (low > 0 && CountRight(observations, probe(low - 1)) == right) {
     --low;
   }
   std::size_t high = gap;
   while (high < angles.size() &&
-         CountRight(observations, probe(high + 1), rule) == right) {
+         CountRight(observations, probe(high + 1)) == right) {
     ++high;
   }
   if (low > 0) out.same_low_rad = angles[low - 1];
@@ -112,26 +108,19 @@ Bracket FindBracket(std::span<const Observation> observations) {
 }
 
 bool DecidesNothing(const Observation& observation,
-                    const TheoryBoundary& theory, double coverage_factor) {
+                    const TheoryBoundary& theory) {
   return std::abs(observation.angle_rad - theory.boundary_rad) <=
-         coverage_factor * std::hypot(TotalU(observation), theory.u_rad) +
-             kSameAngle_rad;
+         2.0 * std::hypot(TotalU(observation), theory.u_rad) + kSameAngle_rad;
 }
 
 Agreement CompareWithTheory(std::span<const Observation> observations,
-                            const TheoryBoundary& theory,
-                            const AgreementOptions& options) {
+                            const TheoryBoundary& theory) {
   if (!std::isfinite(theory.boundary_rad) || !(theory.u_rad >= 0.0) ||
       !std::isfinite(theory.u_rad)) {
     throw std::invalid_argument(fmt::format(
         "theory {}: boundary_rad is {} and u_rad is {}; the boundary must be "
         "finite and u finite and not negative",
         theory.name, theory.boundary_rad, theory.u_rad));
-  }
-  if (!(options.coverage_factor >= 0.0)) {
-    throw std::invalid_argument(
-        fmt::format("coverage_factor is {}; it must not be negative",
-                    options.coverage_factor));
   }
   Agreement out;
   out.theory = theory;
@@ -141,16 +130,15 @@ Agreement CompareWithTheory(std::span<const Observation> observations,
       continue;
     }
     const bool bounced = o.outcome == Outcome::kBounce;
-    const bool predicted =
-        PredictsBounce(o.angle_rad, theory.boundary_rad, options.tie_rule);
+    const bool predicted = PredictsBounce(o.angle_rad, theory.boundary_rad);
     Tally(out.all, predicted, bounced);
-    if (DecidesNothing(o, theory, options.coverage_factor)) {
+    if (DecidesNothing(o, theory)) {
       ++out.decides_nothing;
     } else {
       Tally(out.deciding, predicted, bounced);
     }
   }
-  FindSameAgreement(observations, options.tie_rule, out);
+  FindSameAgreement(observations, out);
   return out;
 }
 

@@ -679,15 +679,11 @@ BoundaryPosterior FitBoundary(std::span<const Observation> observations,
   out.common_u_rad = CommonFloor(setups);
   const std::vector<double> start = StartAngles(observations, options);
 
-  const bool always = options.lapse_rule == LapseRule::kAlways;
   JointTable table =
-      MakeTable(setups, start, options, always ? options.lapse : 0.0,
-                options.max_cell_mass);
-  out.lapse = always ? options.lapse : 0.0;
+      MakeTable(setups, start, options, 0.0, options.max_cell_mass);
   // Without lapses the data cannot gain more than -Max(): most never ask. A
   // coarse table tells the gain.
-  if (options.lapse_rule == LapseRule::kWhenTheDataAsk &&
-      -table.Max() > options.lapse_gain) {
+  if (-table.Max() > options.lapse_gain) {
     JointTable with =
         MakeTable(setups, start, options, options.lapse, kCoarseCellMass);
     out.lapse_gain = with.Max() - table.Max();
@@ -704,7 +700,6 @@ BoundaryPosterior FitBoundary(std::span<const Observation> observations,
     again.Refine(options.scatter, options.max_cell_mass);
     table = std::move(again);
   }
-  out.max_log_likelihood = table.Max();
   FillMarginal(table, options.scatter, out.status, out);
   HoldUnderSharpPrior(table, options.sharp_scatter, out);
   HoldUnlessScatterIsSeen(table, FindBracket(observations),

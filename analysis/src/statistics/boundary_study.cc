@@ -45,7 +45,7 @@ TheoryComparison Compare(std::span<const Observation> observations,
   TheoryComparison out;
   out.theory = theory;
   out.declared = declared;
-  out.agreement = CompareWithTheory(observations, theory, options.agreement);
+  out.agreement = CompareWithTheory(observations, theory);
   const double value = theory.boundary_rad;
   const double margin = options.margin_rad;
   out.difference_rad = posterior.median_rad - value;
@@ -92,14 +92,12 @@ TheoryComparison Compare(std::span<const Observation> observations,
   if (m.total() == 0) return out;
   out.wilson95 = WilsonInterval(m.right(), m.total());
   out.clopper_pearson95 = ClopperPearsonInterval(m.right(), m.total());
-  const int counts[] = {m.slide_slide, m.slide_bounce, m.bounce_slide,
+  const TwoByTwo counts{m.slide_slide, m.slide_bounce, m.bounce_slide,
                         m.bounce_bounce};
-  if (const CohensKappa kappa = CohenKappa(counts, 2);
-      !std::isnan(kappa.kappa)) {
+  if (const CohensKappa kappa = CohenKappa(counts); !std::isnan(kappa.kappa)) {
     out.kappa = kappa;
   }
-  const double matthews = MatthewsCorrelation(
-      {m.slide_slide, m.slide_bounce, m.bounce_slide, m.bounce_bounce});
+  const double matthews = MatthewsCorrelation(counts);
   if (!std::isnan(matthews)) out.matthews = matthews;
   return out;
 }

@@ -206,7 +206,6 @@ LikelihoodProfile ProfileOfPosterior(const BoundaryPosterior& posterior) {
   }
   const auto top = static_cast<std::size_t>(
       std::max_element(pl.begin(), pl.end()) - pl.begin());
-  out.max_log_likelihood = posterior.max_log_likelihood;
   const double level = pl[top] - kChiSquare95 / 2;
   // Where pl crosses `at` outwards from the top; between points it is linear.
   const auto cross = [&](double at, int way) -> std::optional<double> {
@@ -249,7 +248,6 @@ LikelihoodProfile ProfileLikelihood(std::span<const Observation> observations,
   const double tolerance = 1e-9 * (options.high_rad - options.low_rad);
   double top = FindTop(pl, observations, options, tolerance);
   const Best best = pl.At(top);
-  out.max_log_likelihood = best.log_likelihood;
 
   const double level = best.log_likelihood - kChiSquare95 / 2;
   out.open_low = pl(options.low_rad) >= level;

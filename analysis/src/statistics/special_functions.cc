@@ -114,11 +114,6 @@ double BetaQuantile(double a, double b, double p) {
   }
 }
 
-double StudentUpperTail(double t, double df) {
-  const double tail = 0.5 * RegularizedBeta(df / 2, 0.5, df / (df + t * t));
-  return t >= 0.0 ? tail : 1.0 - tail;
-}
-
 double BinomialProbability(int k, int n, double p) {
   if (p <= 0.0) return k == 0 ? 1.0 : 0.0;
   if (p >= 1.0) return k == n ? 1.0 : 0.0;

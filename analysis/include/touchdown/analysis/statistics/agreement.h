@@ -46,10 +46,6 @@ struct Bracket {
 
 Bracket FindBracket(std::span<const Observation> observations);
 
-// What a theory predicts for a trial exactly at its boundary. The paper's
-// Table 1 has "slide" at exactly 11.8 and 7.8 degrees, so that is the default.
-enum class TieRule { kSlidesAtBoundary, kBouncesAtBoundary };
-
 // Angles that differ by less are equal: degrees do not survive the way through
 // radians and back to the last bit.
 inline constexpr double kSameAngle_rad = 1e-9;
@@ -67,35 +63,28 @@ struct ConfusionMatrix {
                          const ConfusionMatrix&) = default;
 };
 
-struct AgreementOptions {
-  TieRule tie_rule = TieRule::kSlidesAtBoundary;
-  // A trial decides nothing about a theory when its angle lies within this
-  // many standard uncertainties of the theory's value: 2, i.e. 95 %.
-  double coverage_factor = 2.0;
-};
-
+// A theory predicts "slide" for a trial exactly at its boundary, as the paper's
+// Table 1 has at exactly 11.8 and 7.8 degrees.
 struct Agreement {
   TheoryBoundary theory;
-  ConfusionMatrix all;       // every decided trial, ties by the tie rule
+  ConfusionMatrix all;       // every decided trial
   ConfusionMatrix deciding;  // without those too close to the boundary
   int decides_nothing = 0;   // decided, but |angle - boundary| <= 2 u
   int undecided = 0;         // motion state undecided
-  // Every boundary from low to high (half open as the tie rule says) has the
-  // same agreement with these trials as the theory's value; an end is absent
-  // where no trial bounds it. This is what "n of n agree" is worth.
+  // Every boundary from low (included) to high has the same agreement with
+  // these trials as the theory's value; an end is absent where no trial bounds
+  // it. This is what "n of n agree" is worth.
   std::optional<double> same_low_rad;
   std::optional<double> same_high_rad;
 };
 
-// Throws std::invalid_argument where the boundary or its u is not finite or
-// coverage_factor < 0.
+// Throws std::invalid_argument where the boundary or its u is not finite.
 Agreement CompareWithTheory(std::span<const Observation> observations,
-                            const TheoryBoundary& theory,
-                            const AgreementOptions& options = {});
+                            const TheoryBoundary& theory);
 
-// True where `angle` lies within coverage_factor * u of the boundary, u that of
-// the angle (own and common part) and that of the theory together.
+// True where `angle` lies within 2 u of the boundary (95 %), u that of the
+// angle (own and common part) and that of the theory together.
 bool DecidesNothing(const Observation& observation,
-                    const TheoryBoundary& theory, double coverage_factor = 2.0);
+                    const TheoryBoundary& theory);
 
 }  // namespace touchdown::analysis

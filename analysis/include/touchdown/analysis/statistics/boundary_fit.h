@@ -45,9 +45,6 @@ struct ScatterPrior {
 // Logarithm of its density in ln s, up to a constant.
 double LogDensity(const ScatterPrior& prior, double scatter_rad);
 
-// When to allow for trials that went wrong (P never below `lapse`).
-enum class LapseRule { kWhenTheDataAsk, kNever, kAlways };
-
 struct BoundaryFitOptions {
   double low_rad = 0.0;  // theta is uniform from low to high
   double high_rad = std::numbers::pi / 2;
@@ -73,10 +70,10 @@ struct BoundaryFitOptions {
   std::vector<ScatterPrior> sensitivity = {{1.0 * core::kDegree, 1.0},
                                            {0.5 * core::kDegree, 1.0}};
 
-  LapseRule lapse_rule = LapseRule::kWhenTheDataAsk;
-  double lapse = 0.02;  // one trial in fifty, on either side
-  // The data ask when the greatest log likelihood gains more than this: a Bayes
-  // factor of about ten.
+  // Trials that went wrong are allowed for (P never below `lapse`: one trial in
+  // fifty, on either side) where the greatest log likelihood gains more than
+  // this by it: a Bayes factor of about ten. Infinite: never.
+  double lapse = 0.02;
   double lapse_gain = 3.0;
 
   // Scatter grid: `scatter_levels` values, equally spaced in ln s. Below the
@@ -154,7 +151,6 @@ struct BoundaryPosterior {
   core::Interval scatter95_rad;
   double lapse = 0.0;       // used
   double lapse_gain = 0.0;  // of the greatest log likelihood, where looked at
-  double max_log_likelihood = 0.0;  // on the grid, with the lapse used
   bool binned = false;
   ScatterPrior prior;  // that it was made with
   // The other priors of its 95 % interval: the cautious one where outcomes ask

@@ -25,7 +25,6 @@ inline constexpr int kNeverDecided = 1'000'000;
 struct StudyOptions {
   BoundaryFitOptions fit;
   NextAngleOptions next;
-  AgreementOptions agreement;
   // The theory declared before the first trial: the only one with a verdict.
   std::optional<TheoryBoundary> declared;
   double margin_rad = 1.0 * core::kDegree;

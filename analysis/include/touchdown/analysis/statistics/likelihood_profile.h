@@ -37,7 +37,6 @@ struct LikelihoodProfile {
   core::Interval interval95_rad;  // ends at low_rad or high_rad where open
   bool open_low = true;
   bool open_high = true;
-  double max_log_likelihood = 0.0;
 };
 
 // Throws std::invalid_argument naming the option that is out of its range.

@@ -21,9 +21,6 @@ double RegularizedBeta(double a, double b, double x);
 // x with I_x(a, b) = p; 0 <= p <= 1.
 double BetaQuantile(double a, double b, double p);
 
-// P(T > t) of Student's distribution with `df` > 0 degrees of freedom.
-double StudentUpperTail(double t, double df);
-
 // P(X = k) of a binomial variable, n >= 0, 0 <= k <= n, 0 <= p <= 1.
 double BinomialProbability(int k, int n, double p);
 
