@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "tests/analysis/reference_data.h"
-#include "tests/support/shared_data.h"
 
 namespace touchdown::analysis {
 namespace {
@@ -138,54 +137,6 @@ TEST(NextUpDown, OneStepDownAfterABounceUpAfterASlide) {
                    0.29 + options.step_rad);
   trials.push_back(Observe(0.30, 0.0, 0.6));
   EXPECT_DOUBLE_EQ(NextUpDown(trials, options).angle_rad, 0.30);
-}
-
-TEST(EstimateDixonMood, PublishedStaircases) {
-  const auto folder = testing::Shared("reference/data");
-  if (!std::filesystem::exists(folder)) GTEST_SKIP() << folder << " not here";
-  const auto t9 =
-      EstimateDixonMood(ReadTrials(folder / "gorla2017_t9_951.csv"), 1.0);
-  EXPECT_EQ(t9->n, 7);
-  EXPECT_EQ(t9->a, 9);
-  EXPECT_EQ(t9->b, 19);
-  EXPECT_NEAR(t9->mean_rad, 36.785714, 1e-6);
-  EXPECT_NEAR(t9->m, 1.061224, 1e-6);
-  EXPECT_NEAR(*t9->scatter_rad, 1.766164, 1e-6);
-  const auto t6 =
-      EstimateDixonMood(ReadTrials(folder / "gorla2017_t6_751.csv"), 1.0);
-  EXPECT_EQ(t6->n, 6);
-  EXPECT_EQ(t6->a, 8);
-  EXPECT_EQ(t6->b, 14);
-  EXPECT_NEAR(t6->mean_rad, 40.833333, 1e-6);
-  const auto dose =
-      EstimateDixonMood(ReadTrials(folder / "vanelstraete2008.csv"), 1.0);
-  EXPECT_EQ(dose->n, 21);
-  EXPECT_EQ(dose->a, 300);
-  EXPECT_NEAR(dose->mean_rad, 20.785714, 1e-6);
-}
-
-TEST(EstimateDixonMood, NothingWithOneOutcome) {
-  EXPECT_FALSE(EstimateDixonMood(std::vector{Raw(1, true)}, 1.0).has_value());
-}
-
-TEST(CentredIsotonicMedian, GorlaEtAl2017) {
-  // Table 6, by hand: shares 0/1, 1.5/4, 2.5/6, 4.5/5 at 39 to 42.
-  std::vector<Observation> trials{Raw(39, false)};
-  const int bounced[] = {1, 2, 4};
-  const int thrown[] = {3, 5, 4};
-  for (int level = 0; level < 3; ++level) {
-    for (int i = 0; i < thrown[level]; ++i) {
-      trials.push_back(Raw(40 + level, i < bounced[level]));
-    }
-  }
-  EXPECT_NEAR(*CentredIsotonicMedian(trials), 41.17241, 5e-6);
-  // Shares that fall are pooled at their centre: here all into one.
-  const std::vector<Observation> falling{Raw(1, true), Raw(2, false)};
-  EXPECT_FALSE(CentredIsotonicMedian(falling).has_value());
-  EXPECT_FALSE(CentredIsotonicMedian({}).has_value());
-  const std::vector<Observation> sharp{Raw(1, false), Raw(2, false),
-                                       Raw(4, true), Raw(5, true)};
-  EXPECT_NEAR(*CentredIsotonicMedian(sharp), 3.0, 1e-12);
 }
 
 }  // namespace

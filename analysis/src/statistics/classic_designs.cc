@@ -8,8 +8,7 @@
 
 #include "statistics/feasible.h"
 #include "touchdown/analysis/statistics/agreement.h"
-#include "touchdown/analysis/statistics/binomial_regression.h"
-#include "touchdown/analysis/statistics/special_functions.h"
+#include "touchdown/analysis/statistics/probit_fit.h"
 #include "touchdown/core/normal.h"
 #include "touchdown/core/require.h"
 
@@ -64,24 +63,6 @@ double DOptimal(std::span<const double> levels, double mean, double scatter) {
         gain(side * a) >= gain(side * b) ? b : a;
   }
   return mean + side * (low + high) / 2 * scatter;
-}
-
-// Greatest likelihood of (mean, scatter) for exact levels that overlap. Nothing
-// where it has no maximum, or outcomes fall as levels rise.
-struct ProbitFit {
-  double mean = 0.0;
-  double scatter = 0.0;
-};
-std::optional<ProbitFit> FitProbit(std::span<const Observation> trials) {
-  std::vector<BinomialRow> rows;
-  for (const Observation& o : trials) {
-    rows.push_back(
-        {{o.angle_rad}, 1.0, o.outcome == Outcome::kBounce ? 1.0 : 0.0});
-  }
-  const Regression fit = FitRegression(rows);
-  if (!fit.found() || !(fit.coefficients[1] > 0.0)) return std::nullopt;
-  return ProbitFit{-fit.coefficients[0] / fit.coefficients[1],
-                   1.0 / fit.coefficients[1]};
 }
 
 struct TriedRange {
@@ -306,87 +287,6 @@ NextAngle NextUpDown(std::span<const Observation> trials,
   if (last.outcome == Outcome::kBounce) angle -= options.step_rad;
   if (last.outcome == Outcome::kNotBounce) angle += options.step_rad;
   return Clipped(angle, options.feasible_rad);
-}
-
-std::optional<DixonMood> EstimateDixonMood(std::span<const Observation> trials,
-                                           double step_rad) {
-  core::Require(step_rad > 0.0, "step_rad", step_rad, "positive");
-  const Counts counts = Count(trials);
-  if (counts.bounce == 0 || counts.not_bounce == 0) return std::nullopt;
-  const Outcome rarer = counts.bounce <= counts.not_bounce
-                            ? Outcome::kBounce
-                            : Outcome::kNotBounce;
-  double lowest = std::numeric_limits<double>::infinity();
-  for (const Observation& o : trials) {
-    if (o.outcome == rarer) lowest = std::min(lowest, o.angle_rad);
-  }
-  DixonMood out;
-  for (const Observation& o : trials) {
-    if (o.outcome != rarer) continue;
-    const int i =
-        static_cast<int>(std::lround((o.angle_rad - lowest) / step_rad));
-    ++out.n;
-    out.a += i;
-    out.b += i * i;
-  }
-  const double n = out.n;
-  out.mean_rad = lowest + step_rad * (out.a / n +
-                                      (rarer == Outcome::kBounce ? -0.5 : 0.5));
-  out.m = (n * out.b - static_cast<double>(out.a) * out.a) / (n * n);
-  if (out.m > 0.3) out.scatter_rad = 1.62 * step_rad * (out.m + 0.029);
-  return out;
-}
-
-std::optional<double> CentredIsotonicMedian(
-    std::span<const Observation> trials) {
-  struct Block {
-    double level = 0.0;
-    double share = 0.0;
-    double n = 0.0;
-  };
-  std::vector<Observation> sorted = Decided(trials);
-  std::sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) {
-    return a.angle_rad < b.angle_rad;
-  });
-  std::vector<Block> blocks;
-  for (const Observation& o : sorted) {
-    if (blocks.empty() || o.angle_rad > blocks.back().level + kSameAngle_rad) {
-      blocks.push_back({o.angle_rad, 0.0, 0.0});
-    }
-    blocks.back().share += o.outcome == Outcome::kBounce ? 1.0 : 0.0;
-    blocks.back().n += 1.0;
-  }
-  for (Block& b : blocks) {
-    b.share = b.n < 2.0 ? b.share / b.n : (b.share + 0.5) / (b.n + 1.0);
-  }
-  // Equal shares are pooled too, but at 0 and 1, where a curve may be flat.
-  const auto rises = [](const Block& a, const Block& b) {
-    const bool flat_end =
-        a.share == b.share && (a.share == 0.0 || a.share == 1.0);
-    return b.share > a.share + 1e-9 || flat_end;
-  };
-  for (std::size_t i = 0; i + 1 < blocks.size();) {
-    Block& a = blocks[i];
-    const Block& b = blocks[i + 1];
-    if (rises(a, b)) {
-      ++i;
-      continue;
-    }
-    const double n = a.n + b.n;
-    a = {(a.level * a.n + b.level * b.n) / n,
-         (a.share * a.n + b.share * b.n) / n, n};
-    blocks.erase(blocks.begin() + static_cast<std::ptrdiff_t>(i) + 1);
-    if (i > 0) --i;
-  }
-  for (std::size_t i = 0; i + 1 < blocks.size(); ++i) {
-    const Block& a = blocks[i];
-    const Block& b = blocks[i + 1];
-    if (a.share <= 0.5 && 0.5 <= b.share && b.share > a.share) {
-      return a.level +
-             (0.5 - a.share) / (b.share - a.share) * (b.level - a.level);
-    }
-  }
-  return std::nullopt;
 }
 
 }  // namespace touchdown::analysis

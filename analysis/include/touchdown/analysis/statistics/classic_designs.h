@@ -51,29 +51,4 @@ struct UpDownOptions {
 NextAngle NextUpDown(std::span<const Observation> trials,
                      const UpDownOptions& options = {});
 
-// Dixon and Mood's estimate from an up-and-down run with steps of `step`; a
-// historical check, spoilt by a long run-up. Nothing where one outcome is
-// missing.
-struct DixonMood {
-  int n = 0;  // trials of the rarer outcome
-  int a = 0;  // sum of i, levels above the lowest of that outcome
-  int b = 0;  // sum of i^2
-  double mean_rad = 0.0;
-  double m = 0.0;                     // (n b - a^2) / n^2
-  std::optional<double> scatter_rad;  // 1.62 step (m + 0.029), where m > 0.3
-};
-std::optional<DixonMood> EstimateDixonMood(std::span<const Observation> trials,
-                                           double step_rad);
-
-// The level at which centred isotonic regression crosses 1/2 (Oron and
-// Flournoy, Statistics in Biopharmaceutical Research 9, 258-267, 2017): the
-// shares of bounces by level, made to rise by pooling neighbours at their
-// common centre, joined by straight lines. Without a model and without an
-// interval of its own: a check of runs that sit on few levels. Shares of two
-// and more trials are first drawn towards 1/2 by one trial, against the bias of
-// sequential designs (Flournoy and Oron 2020). Nothing where the curve does not
-// cross 1/2.
-std::optional<double> CentredIsotonicMedian(
-    std::span<const Observation> trials);
-
 }  // namespace touchdown::analysis
