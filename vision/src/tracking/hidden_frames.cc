@@ -78,7 +78,8 @@ std::optional<OutlineJob> HiddenFrames::Expect(const BodyImage& body,
                                                const OutlineOptions& options,
                                                std::int64_t frame) const {
   std::optional<OutlineJob> job =
-      Predict(fits, frame, calib::ImageAngle(*options.ground));
+      Predict(fits, frame,
+              options.ground ? calib::ImageAngle(*options.ground) : 0.0);
   if (!job) return std::nullopt;
   Pose pose;
   pose.centre = job->start.centre;

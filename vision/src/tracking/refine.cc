@@ -70,8 +70,10 @@ void Refiner::LookNearGround(Track& refined) {
   // px of the ground's wave: what a body hides of a wavier edge is no level
   // line. Not studied.
   constexpr double kMaxWave_px = 0.1;
-  if (!track_.known_background || options_.ground->wave_px > kMaxWave_px)
+  if (!track_.known_background || !options_.ground ||
+      options_.ground->wave_px > kMaxWave_px) {
     return;
+  }
   // Poses that reach down to the ground, evenly spread: some thousand pixels in
   // all, which is enough for the test below. More cost time.
   constexpr std::size_t kMaxLowPoses = 40;

@@ -538,7 +538,8 @@ core::Expected<TrackResult> FollowBody(Clip& clip,
     if (!cut.empty()) warning = cut;
   }
   // Sizes that nobody told are those of outlines, as long as these explain the
-  // pictures; an outline of a ball is a circle whatever its face shows.
+  // pictures once highlights and occluders are known, of which a texture tells
+  // less; an outline of a ball is a circle whatever its face shows.
   const bool is_told =
       options.size ||
       (options.measured && options.kind == core::BodyKind::kSphere);
@@ -546,7 +547,10 @@ core::Expected<TrackResult> FollowBody(Clip& clip,
       is_told ? NeedsLayers(track, covers.most) ||
                     ShowsMarks(clip, result.background, track)
               : track.body.kind == core::BodyKind::kRectangle &&
-                    !IsExplained(track);
+                    !IsExplained(track) &&
+                    !IsExplained(Refine(clip, result.background, track,
+                                        {std::nullopt, std::nullopt,
+                                         options.threads}));
   if (needs_layers &&
       TakeLayers(clip, options, covers.most, std::move(layered), result)) {
     whole_px = 0.0;

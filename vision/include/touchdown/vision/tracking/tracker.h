@@ -29,7 +29,8 @@ Track FitEveryFrame(Clip& clip, const Background& background,
                     const Track& track, const TrackOptions& options = {});
 
 struct RefineOptions {
-  calib::GroundLine ground;
+  // Nothing: not known yet; the picture near it is then taken for the body's.
+  std::optional<calib::GroundLine> ground;
 
   // Short over long side of a rectangle, where a person measured both: a block
   // that lies on the ground hides one of its edges.
