@@ -15,15 +15,16 @@ namespace touchdown::vision {
 // the body but for a tenth of the noise.
 inline constexpr double kUntouched = 0.2;
 
-// Whether outlines are so near to the noise that they leave nothing to be
-// explained.
-bool IsExplained(const Track& track);
-
 // What TrackBody asks of a track, so that it is worth the time: a body that its
 // outlines explain before a background that is known well needs no pictures.
 // `most_covered`: the largest share of the frames in which the track covers one
 // and the same pixel.
 bool NeedsLayers(const Track& track, double most_covered);
+
+// Whether outlines explain the body to the noise once highlights and occluders
+// are known (Refine): a texture of any shape tells less of the sides then.
+bool HasPlainFace(Clip& clip, const Background& background, const Track& track,
+                  int threads);
 
 // Whether marks show that a ball turns: its face changes by more than noise
 // from frame to frame. Its outlines need no pictures, its spin does.

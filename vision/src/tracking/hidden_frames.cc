@@ -77,9 +77,8 @@ std::optional<OutlineJob> HiddenFrames::Expect(const BodyImage& body,
                                                std::span<const Fitted> fits,
                                                const OutlineOptions& options,
                                                std::int64_t frame) const {
-  std::optional<OutlineJob> job =
-      Predict(fits, frame,
-              options.ground ? calib::ImageAngle(*options.ground) : 0.0);
+  std::optional<OutlineJob> job = Predict(
+      fits, frame, options.ground ? calib::ImageAngle(*options.ground) : 0.0);
   if (!job) return std::nullopt;
   Pose pose;
   pose.centre = job->start.centre;

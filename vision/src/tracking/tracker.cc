@@ -544,13 +544,11 @@ core::Expected<TrackResult> FollowBody(Clip& clip,
       options.size ||
       (options.measured && options.kind == core::BodyKind::kSphere);
   const bool needs_layers =
-      is_told ? NeedsLayers(track, covers.most) ||
-                    ShowsMarks(clip, result.background, track)
-              : track.body.kind == core::BodyKind::kRectangle &&
-                    !IsExplained(track) &&
-                    !IsExplained(Refine(clip, result.background, track,
-                                        {std::nullopt, std::nullopt,
-                                         options.threads}));
+      is_told
+          ? NeedsLayers(track, covers.most) ||
+                ShowsMarks(clip, result.background, track)
+          : track.body.kind == core::BodyKind::kRectangle &&
+                !HasPlainFace(clip, result.background, track, options.threads);
   if (needs_layers &&
       TakeLayers(clip, options, covers.most, std::move(layered), result)) {
     whole_px = 0.0;
