@@ -129,6 +129,38 @@ TEST(ContactUncertainty, WrongScaleLeavesTheContact) {
   }
 }
 
+// Short flights do not refute the gravity that the scale tells, as the cut of
+// the path needs it; that they have another is told all the same. A frame rate
+// that is 1.2 times too high makes it 1.44 times too large.
+TEST(ContactUncertainty, ShortFlightsTellAWrongFrameRate) {
+  constexpr double kTooHigh = 1.2;
+  Throw thrown;
+  thrown.contact_s = 0.0103;
+  thrown.before = {1.5, -1.2, 0.0};
+  Rebound(thrown, 0.6);
+  Filming filming;
+  filming.camera.fps = 2000.0;
+  filming.frames = 45;
+  filming.u_px = 0.01;
+  int refuted = 0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    SCOPED_TRACE(seed);
+    filming.seed = seed;
+    const PlaneTrack track = FilmPlane(thrown, filming);
+    ContactOptions options = WithScale(filming);
+    // As a scale that is too small by the square.
+    options.scale->px_per_m.value /= kTooHigh * kTooHigh;
+    const ContactResult result = FindContacts(track, options);
+    refuted += result.gravity_refuted ? 1 : 0;
+    const core::Measured& g = result.first.motion.gravity_check_mps2;
+    ASSERT_TRUE(g) << g.error().reason;
+    EXPECT_NEAR(g->value / (kTooHigh * kTooHigh), core::kStandardGravity_mps2,
+                4.0 * g->u);
+    EXPECT_GT(g->value - core::kStandardGravity_mps2, 4.0 * g->u);
+  }
+  EXPECT_LT(refuted, 10);
+}
+
 // All poses lie 0.16 px beside the body, in its own directions, as
 // outlines in a camera's gamma do: after the impact it tumbles, and the error
 // goes round with it. Its path is a flight all the same.

@@ -519,17 +519,22 @@ ContactResult FindContacts(const PlaneTrack& given,
     result.drag_per_px = FitDrag(track, SelectFlights(cut.stretches), flight);
   }
   flight.drag_per_px = options.drag_per_px;
+  PlaneTrack freely_seen = track;
   if (WidenToCorrelation(cut.stretches, flight, track) &&
       options.path.empty()) {
     cut.stretches = SegmentMotion(track, segmentation).stretches;
   }
   const std::vector<Stretch>& stretches = cut.stretches;
+  // About flights of a wrong gravity all residuals are correlated: u would be
+  // so large that it hid the gravity that the flights have.
+  WidenToCorrelation(stretches, {std::nullopt, flight.drag_per_px},
+                     freely_seen);
   result.gravity_refuted = cut.gravity_refuted;
-  RecordContext context{track,     options,     flight,
+  RecordContext context{track,     freely_seen, options,      flight,
                         stretches, u_common_px, u_common_face};
   if (asked) {
     const double share =
-        GravityShare(track, stretches,
+        GravityShare(freely_seen, stretches,
                      cut.gravity_refuted ? *told.gravity_px_per_s2 : *asked);
     context.scale_doubt = std::abs(share - 1.0);
     context.bend_px = context.scale_doubt * told.gravity_px_per_s2->value *

@@ -323,8 +323,8 @@ void FillMotion(const RecordContext& context, const Event& event,
         AbsentBecause("uninformative: its uncertainty exceeds 10 %");
     std::vector<SampleRange> flights = {event.before_frames};
     if (event.after) flights.push_back(event.after_frames);
-    if (auto gravity_px =
-            FitGravity(track, flights, context.flight.drag_per_px)) {
+    if (auto gravity_px = FitGravity(context.freely_seen, flights,
+                                     context.flight.drag_per_px)) {
       const double fastest =
           std::max(std::abs(fit.p[kOmega]), std::abs(fit.p[kOmega2])) /
           fit.interval_s;

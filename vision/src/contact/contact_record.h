@@ -13,6 +13,8 @@ namespace touchdown::vision {
 
 struct RecordContext {
   const PlaneTrack& track;
+  // The same, with the u that flights of any gravity ask for.
+  const PlaneTrack& freely_seen;
   const ContactOptions& options;
   FlightOptions flight;
   const std::vector<Stretch>& stretches;
