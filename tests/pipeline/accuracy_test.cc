@@ -58,6 +58,22 @@ TEST(Accuracy, HardClipsAreHonest) {
   EXPECT_GE(all.CoverageBand().high, 0.95);
 }
 
+// What shines on a block, or hides it, is told by few numbers: a texture of any
+// shape in its place leaves the sides open, and u was 10 to 100 times the
+// bound.
+TEST(Accuracy, HighlightsAndOccludersAreNoTexture) {
+  for (const Case& c :
+       {Draw(48, Hardship::kShaded), Draw(49, Hardship::kShaded),
+        Draw(32, Hardship::kObstacle)}) {
+    SCOPED_TRACE(c.seed);
+    const Outcome outcome = Analyse(c);
+    ASSERT_TRUE(outcome.readings[kRadius]);
+    const Reading& radius = *outcome.readings[kRadius];
+    EXPECT_LT(radius.u, 4.0 * radius.bound);
+    EXPECT_LT(std::abs(radius.error), 2.5 * radius.u);
+  }
+}
+
 // Rebounds from none to ten times the bounce height: where the gap is off it by
 // more than twice its u no label is wrong.
 TEST(Accuracy, NoFalseAndNoMissedBounce) {

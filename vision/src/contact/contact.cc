@@ -534,7 +534,7 @@ ContactResult FindContacts(const PlaneTrack& given,
                         stretches, u_common_px, u_common_face};
   if (asked) {
     const double share =
-        GravityShare(freely_seen, stretches,
+        GravityShare(track, stretches,
                      cut.gravity_refuted ? *told.gravity_px_per_s2 : *asked);
     context.scale_doubt = std::abs(share - 1.0);
     context.bend_px = context.scale_doubt * told.gravity_px_per_s2->value *
