@@ -19,7 +19,6 @@ namespace {
 
 using core::AbsentBecause;
 using core::AngleKind;
-using core::BodyKind;
 using core::kDegree;
 
 // rad: 90 deg.
