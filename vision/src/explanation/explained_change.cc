@@ -281,12 +281,11 @@ core::Expected<ExplainedChange> MeasureExplainedChange(
   // Both sums have lost a degree of freedom a pixel to the mean, or to B.
   const double noise = variance * static_cast<double>((n - 1) * near.size());
   // Noise alone scatters the sum by sqrt(2 N) s0^2: ten times that is a change.
-  // Not studied.
+  // Not studied. Where there is none, what was followed stands still.
   constexpr double kChangeSigmas = 10.0;
   if (all - noise < kChangeSigmas * variance *
                         std::sqrt(2.0 * static_cast<double>(out.pixels))) {
-    return core::AbsentBecause(
-        "what changes near the body's path does not stand out of the noise");
+    return out;
   }
   // Share of the change that the model explains, both with the noise taken out.
   const auto share = [&](const Residuals& left) {

@@ -61,7 +61,8 @@ struct ExplainedChangeOptions {
 
 struct ExplainedChange {
   // Q over the pixels within half the body's size of its outline in any sampled
-  // frame: a body that was followed at a wrong place, or lost, counts.
+  // frame: a body that was followed at a wrong place, or lost, counts. 0 where
+  // what changes there does not stand out of the noise: no body moves.
   double near = 0.0;
   // Of the body's area, the share that is seen to be body: there T explains
   // what B does not. The rest lies beside a smaller body, or one of another
@@ -93,10 +94,9 @@ struct ExplainedChange {
   std::int64_t pixels = 0;  // samples near, all frames together
 };
 
-// Absent where the track has fewer than three poses in the sampled frames, or
-// where what changes near it does not stand out of the noise. Throws what
-// Clip::Read throws; std::invalid_argument if a number of options is below its
-// least (frames 3, points 100) or the clip is not the track's.
+// Absent where the track has fewer than three poses in the sampled frames.
+// Throws what Clip::Read throws; std::invalid_argument if a number of options
+// is below its least (frames 3, points 100) or the clip is not the track's.
 core::Expected<ExplainedChange> MeasureExplainedChange(
     Clip& clip, const Track& track, const ExplainedChangeOptions& options = {});
 
