@@ -75,20 +75,27 @@ TEST(Plane, DirectionLiesInItsHalfTurn) {
   EXPECT_EQ(ImageAngle(MakeGroundLine({5.0, 9.0}, {5.0, 0.0})), 0.5 * kPi);
 }
 
-// Two points each good to u along the normal: the line is good to u / sqrt(2)
-// in the middle, and to u at either point, half a length away from it.
+// Of a height above the line at p: offset and angle of the line.
+double HeightUncertainty(const GroundLine& line, core::PixelPoint p) {
+  return std::hypot(line.u_offset_px,
+                    line.u_angle_rad * PositionOnLine(line, p));
+}
+
+// Two points each good to u along the normal: the line is good to u at either
+// point, to u / sqrt(2) in the middle, and beyond them grows in proportion.
 TEST(Plane, UncertaintyOfTwoClicks) {
   for (const double u : {0.0, 0.2, 0.5, 3.0}) {
     const GroundLine line = MakeGroundLine({40.0, 300.0}, {600.0, 330.0}, u);
     const double length = std::hypot(560.0, 30.0);
-    EXPECT_NEAR(line.u_offset_px, u / std::sqrt(2.0), 1e-12);
-    EXPECT_NEAR(std::hypot(line.u_offset_px, line.u_angle_rad * length / 2), u,
+    EXPECT_NEAR(HeightUncertainty(line, line.p1), u, 1e-12);
+    EXPECT_NEAR(HeightUncertainty(line, line.p2), u, 1e-12);
+    EXPECT_NEAR(HeightUncertainty(line, line.reference), u / std::sqrt(2.0),
                 1e-12);
     EXPECT_NEAR(line.u_angle_rad, std::sqrt(2.0) * u / length, 1e-15);
     EXPECT_EQ(line.source, GroundSource::kUser);
   }
-  EXPECT_DOUBLE_EQ(MakeGroundLine({0, 0}, {10, 0}).u_offset_px,
-                   0.5 / std::sqrt(2.0));
+  EXPECT_DOUBLE_EQ(
+      HeightUncertainty(MakeGroundLine({0, 0}, {10, 0}), {0.0, 0.0}), 0.5);
 }
 
 // Nothing depends on where the origin is: heights by 1e6 px keep ten digits.
@@ -104,6 +111,8 @@ TEST(Plane, FarOriginChangesNothing) {
         const PixelPoint q{x + far, 123.0 - far};
         EXPECT_NEAR(HeightAboveLine(near, p), HeightAboveLine(moved, q), 1e-7);
         EXPECT_NEAR(PositionOnLine(near, p), PositionOnLine(moved, q), 1e-7);
+        EXPECT_NEAR(HeightUncertainty(near, p), HeightUncertainty(moved, q),
+                    1e-9);
       }
     }
   }
