@@ -102,8 +102,7 @@ Dependence Test(const Group& group, std::span<const core::Trial> trials) {
                {"how the boundary moves"}},
               {}};
   const auto& posterior = group.study.posterior;
-  // The same angles as the boundary was fitted with: repeated set angles draw
-  // the measured ones towards their mean.
+  // The same angles as the boundary was fitted with.
   const auto observations =
       analysis::UseSetAngles(group.trials.observations).observations;
   std::string telling;

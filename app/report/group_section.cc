@@ -94,12 +94,14 @@ Table MakeFacts(const Group& group, std::span<const core::Trial> trials) {
       fmt::format("{} to {} deg", Plain(study.least_u_rad / kDegree, 3),
                   Plain(study.greatest_u_rad / kDegree, 3)));
   row("of which a set-up's trials share", SharedErrorText(group));
-  if (study.repeated_set_angles > 0) {
-    row("set angles that repeat",
-        fmt::format("{} trials; the ejector repeats to {} deg, which enters "
-                    "the fits beside the measured angles",
-                    study.repeated_set_angles,
-                    Plain(study.set_u_rad.value_or(0.0) / kDegree, 2)));
+  if (study.used_set_angles > 0) {
+    row("set angles",
+        fmt::format("of {} trials, used beside the measured angles; the "
+                    "ejector repeats to {} deg and differs from one set angle "
+                    "to another by {} deg",
+                    study.used_set_angles,
+                    Plain(study.set_within_rad.value_or(0.0) / kDegree, 2),
+                    Plain(study.set_between_rad.value_or(0.0) / kDegree, 2)));
   }
   row("next angle", NextSentence(group));
   return table;

@@ -118,8 +118,9 @@ BoundaryStudy StudyBoundary(std::span<const Observation> observations,
   }
   SetAngleUse use = UseSetAngles(observations, {options.next.set_u_rad});
   const std::vector<Observation>& fitted = use.observations;
-  out.repeated_set_angles = use.repeated;
-  out.set_u_rad = use.set_u_rad;
+  out.used_set_angles = use.used;
+  out.set_within_rad = use.within_rad;
+  out.set_between_rad = use.between_rad;
   out.posterior = FitBoundary(fitted, options.fit);
   // What kind of data these are is said of the angles as they were measured.
   out.posterior.status = Classify(observations);

@@ -75,10 +75,12 @@ struct BoundaryStudy {
   Bracket bracket;
   double least_u_rad = 0.0;  // of the angles, own and common part together
   double greatest_u_rad = 0.0;
-  // Trials whose set angle repeats, and the ejector's repeatability that they
-  // show: both enter the fits (set_angles.h).
-  int repeated_set_angles = 0;
-  std::optional<double> set_u_rad;
+  // Trials whose set angle enters the fits beside the measured one, the
+  // ejector's repeatability that they show, and its deviation from one set
+  // angle to another (set_angles.h).
+  int used_set_angles = 0;
+  std::optional<double> set_within_rad;
+  std::optional<double> set_between_rad;
   BoundaryPosterior posterior;
   LikelihoodProfile likelihood;
   double margin_rad = 0.0;
