@@ -59,6 +59,10 @@ void CheckFitOptions(const BoundaryFitOptions& o) {
   check(o.scatter);
   if (o.cautious_scatter) check(*o.cautious_scatter);
   if (o.sharp_scatter) check(*o.sharp_scatter);
+  if (o.unlikely_fall) {
+    core::Require(*o.unlikely_fall > 0.0, "unlikely_fall", *o.unlikely_fall,
+                  "positive");
+  }
   for (const ScatterPrior& prior : o.sensitivity) check(prior);
 }
 
@@ -458,36 +462,38 @@ std::vector<double> ProfileByAngle(const JointTable& table) {
   return out;
 }
 
-// Outcomes of one kind bound the boundary on one side. The posterior is proper
-// only because its support ends, and the more of it is open, the nearer to that
-// end its equal tails lie: of 47 boundaries near the last of 20 ascending or
-// staircase angles they held 3. There the interval goes to the end of the
-// support, and as far on the other side as the likelihood, whatever the
-// scatter, has not fallen by half of `fall`.
-core::Interval OpenInterval(DataStatus status,
-                            const std::vector<double>& angles,
-                            const std::vector<double>& profile, double fall,
-                            core::Interval tails) {
+// All angles between the outermost at which the log likelihood, whatever the
+// scatter, has fallen by half of `fall`.
+core::Interval LikelyAngles(const std::vector<double>& angles,
+                            const std::vector<double>& profile, double fall) {
   const double level =
       *std::max_element(profile.begin(), profile.end()) - fall / 2;
   const auto crossing = [&](std::size_t out, std::size_t in) {
     const double share = (level - profile[out]) / (profile[in] - profile[out]);
     return angles[out] + share * (angles[in] - angles[out]);
   };
-  const auto above = [&](double l) { return l >= level; };
+  std::size_t first = 0;
+  while (profile[first] < level) ++first;
+  std::size_t last = profile.size() - 1;
+  while (profile[last] < level) --last;
+  return {first > 0 ? crossing(first - 1, first) : angles.front(),
+          last + 1 < angles.size() ? crossing(last + 1, last) : angles.back()};
+}
+
+// Outcomes of one kind bound the boundary on one side. The posterior is proper
+// only because its support ends, and the more of it is open, the nearer to that
+// end its equal tails lie: of 47 boundaries near the last of 20 ascending or
+// staircase angles they held 3. There the interval goes to the end of the
+// support, and as far on the other side as the likelihood is not against it.
+core::Interval OpenInterval(DataStatus status,
+                            const std::vector<double>& angles,
+                            const core::Interval& likely,
+                            core::Interval tails) {
   if (status == DataStatus::kOnlySlides) {
-    const auto i = static_cast<std::size_t>(
-        std::find_if(profile.begin(), profile.end(), above) - profile.begin());
-    return {std::min(tails.low, i > 0 ? crossing(i - 1, i) : angles.front()),
-            angles.back()};
+    return {std::min(tails.low, likely.low), angles.back()};
   }
   if (status == DataStatus::kOnlyBounces) {
-    const auto i = static_cast<std::size_t>(
-        std::find_if(profile.rbegin(), profile.rend(), above).base() -
-        profile.begin() - 1);
-    return {angles.front(),
-            std::max(tails.high, i + 1 < angles.size() ? crossing(i + 1, i)
-                                                       : angles.back())};
+    return {angles.front(), std::max(tails.high, likely.high)};
   }
   return tails;
 }
@@ -499,11 +505,12 @@ void FillMarginal(const JointTable& table, const ScatterPrior& prior,
   out.cumulative = Cumulate(out.angle_rad, out.density_per_rad);
   out.median_rad = Quantile(out, 0.5);
   const std::vector<double> profile = ProfileByAngle(table);
-  out.interval90_rad = OpenInterval(status, out.angle_rad, profile, kFall90,
-                                    {Quantile(out, 0.05), Quantile(out, 0.95)});
-  out.interval95_rad =
-      OpenInterval(status, out.angle_rad, profile, kFall95,
-                   {Quantile(out, 0.025), Quantile(out, 0.975)});
+  out.interval90_rad = OpenInterval(
+      status, out.angle_rad, LikelyAngles(out.angle_rad, profile, kFall90),
+      {Quantile(out, 0.05), Quantile(out, 0.95)});
+  out.interval95_rad = OpenInterval(
+      status, out.angle_rad, LikelyAngles(out.angle_rad, profile, kFall95),
+      {Quantile(out, 0.025), Quantile(out, 0.975)});
 }
 
 // The 95 % interval together with that under another prior.
@@ -548,6 +555,21 @@ void HoldUnlessScatterIsSeen(const JointTable& table, const Bracket& bracket,
         std::clamp(*bracket.high_rad, interval.high, out.angle_rad.back());
   }
   out.cautious_prior = prior;
+}
+
+// Where outcomes overlap the likelihood itself tells the scatter: an angle that
+// none makes likely is in the 95 % interval only because of the prior.
+void LeaveOutUnlikelyAngles(const JointTable& table,
+                            const std::optional<double>& fall,
+                            BoundaryPosterior& out) {
+  if (!fall || out.status != DataStatus::kOverlap) return;
+  const core::Interval likely =
+      LikelyAngles(out.angle_rad, ProfileByAngle(table), *fall);
+  core::Interval& interval = out.interval95_rad;
+  interval.low =
+      std::min(std::max(interval.low, likely.low), out.interval90_rad.low);
+  interval.high =
+      std::max(std::min(interval.high, likely.high), out.interval90_rad.high);
 }
 
 void FillMoments(BoundaryPosterior& out) {
@@ -704,6 +726,7 @@ BoundaryPosterior FitBoundary(std::span<const Observation> observations,
   HoldUnderSharpPrior(table, options.sharp_scatter, out);
   HoldUnlessScatterIsSeen(table, FindBracket(observations),
                           options.cautious_scatter, out);
+  LeaveOutUnlikelyAngles(table, options.unlikely_fall, out);
   FillGrid(table, options.scatter, out.grid);
   FillMoments(out);
   FillScatter(out);

@@ -66,6 +66,13 @@ struct BoundaryFitOptions {
   // hardly change (STATISTICS.md). Absent: without it.
   std::optional<ScatterPrior> sharp_scatter =
       ScatterPrior{0.1 * core::kDegree, 0.7};
+  // Where outcomes overlap, the 95 % interval holds no angle at which twice the
+  // log likelihood, whatever the scatter, lies this far below its greatest
+  // value, unless the 90 % interval does. 0.99 quantile of chi^2 with one
+  // degree of freedom. With twenty trials about a boundary that hardly
+  // scatters, the prior makes the interval up to a fifth wider than that.
+  // Absent: the tails alone.
+  std::optional<double> unlikely_fall = 6.634896601021213;
   // The same posterior under other priors: how much of it is prior.
   std::vector<ScatterPrior> sensitivity = {{1.0 * core::kDegree, 1.0},
                                            {0.5 * core::kDegree, 1.0}};
@@ -139,8 +146,9 @@ struct BoundaryPosterior {
   double sd_rad = 0.0;
   // Equal tails. The 95 % interval also holds those under `sharp_scatter` and,
   // where outcomes are separated or touching, those under `cautious_scatter`
-  // and the bracket; the 90 % interval
-  // is what a confirmation is judged by. Where all are of one kind, to the end
+  // and the bracket, and where they overlap no angle that the likelihood is
+  // against (`unlikely_fall`); the 90 % interval is what a confirmation is
+  // judged by. Where all are of one kind, to the end
   // of the support on the side that they leave open, and on the other at least
   // to where the profile of the likelihood has fallen by 1.35 (90 %) or 1.92
   // (95 %), so that no prior on the angle excludes what the trials do not.
