@@ -1,7 +1,7 @@
 // Commands with their options and flags. CLI11 is a library of headers alone:
 // each source that includes it compiles its parser and its templates again. It
-// stands behind options.cc, but for the sources that parse or describe the
-// whole command line.
+// is included by options.cc alone, but for the sources that parse or describe
+// the whole command line.
 #pragma once
 
 #include <functional>

@@ -28,7 +28,7 @@ struct StopRule {
   double least_rise = 2.0;
 
   // The ground found at the contact lies within so many bounce heights of the
-  // line: then what u does not hold decides nothing.
+  // line: then what u does not hold cannot change the state.
   double most_off = 0.1;
 
   // Frames that are decoded from the touchdown on, so that the flight after it

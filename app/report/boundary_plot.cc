@@ -173,7 +173,7 @@ std::string BoundaryScript(const BoundaryPlot& plot) {
   s += OutcomeBlock(plot, Outcome::kUndecided, "undecided");
 
   // The elements of the plot command. Later ones lie over earlier ones: the
-  // hill of the posterior first, the marks of the trials last.
+  // posterior first, the marks of the trials last.
   std::vector<std::string> parts;
   if (!plot.density.angle_rad.empty()) {
     // The density has another unit than the axis, so that its greatest value is

@@ -1,4 +1,4 @@
-// What stands behind a group's trials: the two labels of those that a person
+// The evidence for a group's trials: the two labels of those that a person
 // revised, the budget of their angles, the calibration and software used.
 #include <fmt/core.h>
 
@@ -204,7 +204,7 @@ std::vector<Block> MakeEvidence(const Group& group,
                     MakeProvenance(group, trials, input)}) {
     for (Block& block : part) out.push_back(std::move(block));
   }
-  if (!out.empty()) out.insert(out.begin(), Heading{3, "What stands behind"});
+  if (!out.empty()) out.insert(out.begin(), Heading{3, "Evidence"});
   return out;
 }
 

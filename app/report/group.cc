@@ -23,7 +23,7 @@ namespace touchdown::report {
 namespace {
 
 // Keys of the sort, in radians. Infinity where there is no set-point, or no
-// angle: such a trial stands behind all others.
+// angle: such a trial comes last.
 double OrLast(const std::optional<double>& value) {
   return value.value_or(std::numeric_limits<double>::infinity());
 }

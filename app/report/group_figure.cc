@@ -112,12 +112,13 @@ Figure MakeFigure(const Group& group, std::size_t index) {
   figure.svg = DrawBoundaryPlot(plot);
   figure.caption = fmt::format(
       "{}{}, {}: what was seen at each {}. Bars are {} 2 u (95 %). Line: the "
-      "probability of a bounce at each angle, as the trials leave it. Shaded: "
-      "the bracket. Hill: posterior density of the boundary angle, to its own "
-      "height; bar: its median and 95 % interval.",
+      "probability of a bounce at each angle, as the trials leave it.{} "
+      "Area on the axis: posterior density of the boundary angle, on a scale "
+      "of its own; bar: its median and 95 % interval.",
       group.simulated() ? "Simulated. " : "", core::Name(group.trials.body),
       group.trials.campaign.empty() ? "no campaign" : group.trials.campaign,
-      AngleName(group), kPlusMinus);
+      AngleName(group), kPlusMinus,
+      study.bracket.closed() ? " Shaded: the bracket." : "");
   figure.caption += OpenEndSentence(posterior.status);
   // What the plot shows, for a reader who cannot see it: counts, bracket,
   // boundary, lines.

@@ -1,6 +1,6 @@
 // The pages of one group of trials in the order of reading: what was tested,
 // the plan on record, the checks over all trials, every trial, the pictures,
-// and what stands behind the numbers. The statistics are an annex
+// and the evidence for the numbers. The statistics are an annex
 // (group_statistics.cc).
 #include <fmt/core.h>
 

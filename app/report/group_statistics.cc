@@ -164,7 +164,7 @@ Table MakeConfusion(const Group& group, const analysis::TheoryComparison& t) {
                         number(a.deciding.bounce_slide),
                         number(a.deciding.bounce_bounce)});
   table.rows.push_back(
-      {{"within 2 u of the boundary: decide nothing"},
+      {{"too near to tell (within 2 u of the boundary)"},
        number(a.all.slide_slide + a.all.bounce_slide - a.deciding.slide_slide -
               a.deciding.bounce_slide),
        number(a.all.slide_bounce + a.all.bounce_bounce -

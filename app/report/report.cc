@@ -100,7 +100,7 @@ Section MakeMethods(const ReportInput& input, const std::string& csv) {
        "boundary that does not scatter.",
        "Agreement: the theory predicts slide up to and including its boundary, "
        "bounce above it. A trial whose angle lies within 2 u of the boundary "
-       "decides nothing and is counted apart.",
+       "is too near to tell and is counted apart.",
        "Verdict, for the theory that the campaign declared before its first "
        "trial: confirmed where the 90 % interval of the boundary lies within "
        "the theory's value \u00b1 margin; contradicted where the 95 % interval "

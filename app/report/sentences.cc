@@ -64,8 +64,9 @@ std::string AgreementSentence(const analysis::TheoryComparison& theory) {
                   a.all.total(), theory.theory.name,
                   Plain(theory.theory.boundary_rad / kDegree));
   if (a.decides_nothing > 0) {
-    text += fmt::format(", but {} of them decide{} nothing (within 2 u of it)",
-                        a.decides_nothing, a.decides_nothing == 1 ? "s" : "");
+    text +=
+        fmt::format(", but {} of them {} too near to it to tell (within 2 u)",
+                    a.decides_nothing, a.decides_nothing == 1 ? "lies" : "lie");
   }
   if (a.all.total() > 0) {
     text += fmt::format(

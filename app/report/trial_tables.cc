@@ -38,7 +38,7 @@ std::string GapText(const core::StateDecision& state) {
 }
 
 // Whether the outcome is what `theory` predicts at the measured angle: above
-// its boundary bounce, else slide. "decides nothing" within 2 u of the
+// its boundary bounce, else slide. "too near to tell" within 2 u of the
 // boundary. `o` is null for a trial that the statistics leave out.
 Cell AgreesCell(const core::Trial& trial, const analysis::Observation* o,
                 const analysis::TheoryComparison& theory) {
@@ -48,7 +48,7 @@ Cell AgreesCell(const core::Trial& trial, const analysis::Observation* o,
   }
   const double boundary = theory.theory.boundary_rad;
   if (analysis::DecidesNothing(*o, theory.theory)) {
-    return {"decides nothing", Tone::kMuted};
+    return {"too near to tell", Tone::kMuted};
   }
   const bool bounced = trial.first.state.label == core::MotionState::kBounce;
   return (o->angle_rad > boundary) == bounced ? Cell{"yes", Tone::kGood}

@@ -59,9 +59,7 @@ std::optional<core::Body> ParseBody(const BodyEntry& entry) {
     if (entry.diameter_mm.empty()) {
       // A body whose size nobody gave is a body all the same: a trial by hand
       // can be logged without it.
-      core::Body body;
-      body.diameter_m = core::AbsentBecause("not recorded");
-      return body;
+      return core::UnmeasuredBody(core::BodyKind::kSphere);
     }
     return core::Sphere(ParseEstimateField("diameter-mm", entry.diameter_mm,
                                            kMillimetre, kPlainSize));
@@ -70,14 +68,7 @@ std::optional<core::Body> ParseBody(const BodyEntry& entry) {
     throw FieldError("diameter-mm", "is given, but a rectangle has --sides-mm");
   }
   if (entry.sides_mm.empty()) {
-    // The default reasons are those of a sphere ("not a rectangle"), so all
-    // three are stated anew.
-    core::Body body;
-    body.kind = core::BodyKind::kRectangle;
-    body.diameter_m = core::AbsentBecause("not a sphere");
-    body.long_m = core::AbsentBecause("not recorded");
-    body.short_m = core::AbsentBecause("not recorded");
-    return body;
+    return core::UnmeasuredBody(core::BodyKind::kRectangle);
   }
   const auto [a, b] =
       ParseSidesField("sides-mm", entry.sides_mm, kMillimetre, kPlainSize);

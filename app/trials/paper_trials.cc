@@ -7,25 +7,6 @@
 #include "touchdown/core/units.h"
 
 namespace touchdown::pipeline {
-namespace {
-
-// Makes a body of which only the kind is known. The sizes that this kind has
-// are absent because the paper does not state them; the others keep the reason
-// "not a sphere" or "not a rectangle".
-core::Body UnmeasuredBody(core::BodyKind kind) {
-  core::Body body;
-  body.kind = kind;
-  const auto unknown = core::AbsentBecause("not in the paper");
-  if (kind == core::BodyKind::kSphere) {
-    body.diameter_m = unknown;
-  } else {
-    body.long_m = unknown;
-    body.short_m = unknown;
-  }
-  return body;
-}
-
-}  // namespace
 
 PaperTrials PaperTable1Trials(double u_rad) {
   PaperTrials out;
@@ -34,7 +15,7 @@ PaperTrials PaperTable1Trials(double u_rad) {
        {core::BodyKind::kSphere, core::BodyKind::kRectangle}) {
     core::Campaign campaign;
     campaign.name = fmt::format("paper-table1-{}", core::Name(kind));
-    campaign.body = UnmeasuredBody(kind);
+    campaign.body = core::UnmeasuredBody(kind, "not in the paper");
     campaign.surface = "not in the paper";
     campaign.angle_kind = core::DefaultAngleKind(kind);
     // A campaign must have one; the paper gives none, and its trials say so.

@@ -137,7 +137,7 @@ Selection FromCsv(const SelectionOptions& options) {
   out.trials = ReadTrialsCsv(options.csv, what);
   core::Campaign campaign;
   campaign.name = what.campaign;
-  campaign.body.kind = what.body;
+  campaign.body = core::UnmeasuredBody(what.body);
   campaign.angle_kind = what.angle_kind;
   campaign.surface = options.surface.value_or("");
   if (options.theory_rad) {

@@ -62,7 +62,7 @@ core::Trial MakeTrial(const CsvTrials& what, double angle_deg, double u_deg,
                       double common_u_deg, double p_bounce) {
   core::Trial trial;
   trial.campaign = what.campaign;
-  trial.body.kind = what.body;
+  trial.body = core::UnmeasuredBody(what.body);
   trial.angle_kind = what.angle_kind;
   trial.origin = what.origin;
   core::Contact& contact = trial.first.contact;
@@ -168,7 +168,7 @@ std::vector<core::Trial> ReadTrialsCsv(const std::filesystem::path& path,
                       : 0.0,
                   number("p_bounce", 1.0, "from 0 to 1")));
     // Trials of one calibration share their common error; the name alone tells
-    // the set-ups apart, no entry of a register stands behind it.
+    // the set-ups apart, it is in no register.
     if (const auto setup = find("calibration");
         setup && !cells[*setup].empty()) {
       trials.back().conditions.emplace().calibration.name = cells[*setup];

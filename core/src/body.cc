@@ -36,6 +36,17 @@ Body Rectangle(Estimate side_a_m, Estimate side_b_m) {
   return body;
 }
 
+Body UnmeasuredBody(BodyKind kind, const std::string& reason) {
+  Body body;
+  body.kind = kind;
+  if (kind == BodyKind::kSphere) {
+    body.diameter_m = AbsentBecause(reason);
+  } else {
+    body.long_m = body.short_m = AbsentBecause(reason);
+  }
+  return body;
+}
+
 Measured Size(const Body& body) {
   return body.kind == BodyKind::kSphere ? body.diameter_m : body.long_m;
 }

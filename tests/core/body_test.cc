@@ -41,6 +41,17 @@ TEST(Rectangle, PutsTheLongSideFirst) {
   EXPECT_DOUBLE_EQ(Size(body)->value, 0.060);
 }
 
+TEST(UnmeasuredBody, NamesTheReasonForTheSizesOfItsKindOnly) {
+  const Body sphere = UnmeasuredBody(BodyKind::kSphere);
+  EXPECT_EQ(sphere.diameter_m.error().reason, "not recorded");
+  EXPECT_EQ(sphere.long_m.error().reason, "not a rectangle");
+  const Body block = UnmeasuredBody(BodyKind::kRectangle, "lost");
+  EXPECT_EQ(block.kind, BodyKind::kRectangle);
+  EXPECT_EQ(block.diameter_m.error().reason, "not a sphere");
+  EXPECT_EQ(block.long_m.error().reason, "lost");
+  EXPECT_EQ(block.short_m.error().reason, "lost");
+}
+
 TEST(DefaultBounceHeight, IsTheLargerOfHalfAMillimetreAndTwoPercent) {
   EXPECT_DOUBLE_EQ(DefaultBounceHeight(10.0_mm), 0.5_mm);
   EXPECT_DOUBLE_EQ(DefaultBounceHeight(25.0_mm), 0.5_mm);

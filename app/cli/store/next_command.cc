@@ -127,7 +127,8 @@ core::Campaign EmptyCampaign(const BoundaryFlags& flags,
   core::Campaign out;
   out.name = flags.campaign;
   if (!flags.body.empty()) {
-    out.body.kind = *core::ParseBodyKind(flags.body);  // MakeInput() checked
+    // MakeInput() checked the word.
+    out.body = core::UnmeasuredBody(*core::ParseBodyKind(flags.body));
   }
   out.angle_kind = flags.angle_kind.empty()
                        ? core::DefaultAngleKind(out.body.kind)

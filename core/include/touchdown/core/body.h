@@ -1,6 +1,8 @@
 // The body: what was thrown, and how large it is.
 #pragma once
 
+#include <string>
+
 #include "touchdown/core/estimate.h"
 #include "touchdown/core/words.h"
 
@@ -23,6 +25,10 @@ Body Sphere(Estimate diameter_m);
 
 // A rectangle of known sides, in either order. Throws like Sphere.
 Body Rectangle(Estimate side_a_m, Estimate side_b_m);
+
+// A body whose size nobody gave or measured: the sizes of its kind are absent
+// for this reason, the others because it has none.
+Body UnmeasuredBody(BodyKind kind, const std::string& reason = "not recorded");
 
 // The body's size, the length that conventions refer to: the diameter, or the
 // long side.
