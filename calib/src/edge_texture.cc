@@ -156,23 +156,25 @@ EdgePoint TexturedEdge(const StillImage& image, const EdgeTexture& texture,
     const Eigen::LDLT<Eigen::MatrixXd> factor(covariance);
     if (!factor.isPositive()) return {edge.x, edge.y, 0.0};
     // v - g F = a (1 - F), then the step in y at that a.
-    Eigen::MatrixXd rows(n, 2);
-    rows.col(0) = 1.0 - cover.array();
-    const Eigen::VectorXd weighted = factor.solve(rows.col(0));
-    const double a =
-        weighted.dot(value - ground * cover) / weighted.dot(rows.col(0));
-    rows.col(1) = (ground - a) * slope;
-    const Eigen::VectorXd residual = value - ground * cover - a * rows.col(0);
-    const Eigen::Matrix2d normal = rows.transpose() * factor.solve(rows);
-    const Eigen::Vector2d step =
-        normal.ldlt().solve(rows.transpose() * factor.solve(residual));
-    if (!step.allFinite()) return {edge.x, edge.y, 0.0};
+    const Eigen::VectorXd open = 1.0 - cover.array();
+    const Eigen::VectorXd by_level = factor.solve(open);
+    const double a = by_level.dot(value - ground * cover) / by_level.dot(open);
+    const Eigen::VectorXd shift = (ground - a) * slope;
+    const Eigen::VectorXd by_shift = factor.solve(shift);
+    const Eigen::VectorXd residual = value - ground * cover - a * open;
+    // Of the two normal equations, a and y, the second unknown.
+    const double both = open.dot(by_shift);
+    const double level = open.dot(by_level);
+    const double step =
+        (level * by_shift.dot(residual) - both * by_level.dot(residual)) /
+        (level * shift.dot(by_shift) - both * both);
+    if (!std::isfinite(step)) return {edge.x, edge.y, 0.0};
     edge.strength = side * (ground - a);
-    edge.y += std::clamp(step[1], -1.0, 1.0);
+    edge.y += std::clamp(step, -1.0, 1.0);
     if (std::abs(edge.y - y0) > reach) return {edge.x, edge.y, 0.0};
     // px of the last step, far below an edge point's u.
     constexpr double kSettled_px = 1e-4;
-    if (std::abs(step[1]) < kSettled_px) break;
+    if (std::abs(step) < kSettled_px) break;
   }
   return edge;
 }

@@ -82,7 +82,7 @@ TEST(NormalEquations, StiffnessOfTheCoarseSpaceIsThatOfProducts) {
   Unknowns right = equations.Zero();
   equations.Fill(right);
   const CoarseSpace coarse = equations.FindCoarseSpace(at.poses);
-  for (std::size_t d = 0; d < kDirections; ++d) {
+  for (int d = 0; d < kDirections; ++d) {
     const auto column = static_cast<Eigen::Index>(d);
     Unknowns direction = equations.Zero();
     coarse.Prolong(Eigen::VectorXd::Unit(kDirections, column), direction);

@@ -1,6 +1,6 @@
 #include "background/scene_motion.h"
 
-#include <Eigen/Cholesky>
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,6 +10,7 @@
 
 #include "background/cubic.h"
 #include "numbers/robust.h"
+#include "numbers/symmetric_factor.h"
 
 namespace touchdown::vision {
 namespace {
@@ -295,14 +296,14 @@ SceneMotion SceneReference::Fit(const core::Frame& frame,
       information.selfadjointView<Eigen::Lower>().rankUpdate(j, weight);
       pull -= weight * off * j;
     }
-    const Eigen::LLT<Information> solver(information);
-    const Unknowns step = solver.solve(pull);
+    const SymmetricFactor factor(information);
+    const Unknowns step = factor.Solve(pull);
     out.motion.shift_x_px += step(0);
     out.motion.shift_y_px += step(1);
     out.motion.grow += step(2) / reach_;
     out.motion.turn += step(3) / reach_;
     out.gain += step(4);
-    covariance = solver.solve(Information::Identity());
+    covariance = factor.Inverse();
     if (step.head<4>().cwiseAbs().maxCoeff() * block_px_ < small_step_px) break;
   }
   const Eigen::Vector4d lengths = Lengths(out.motion);

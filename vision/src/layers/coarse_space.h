@@ -16,7 +16,8 @@ namespace touchdown::vision::layers {
 
 // The shared parameters that a T which is a spline leaves free, then x, y,
 // turn.
-inline constexpr std::size_t kDirections = kQuadratic + kPose;
+inline constexpr int kDirections = static_cast<int>(kQuadratic + kPose);
+using ByDirection = Eigen::Matrix<float, Eigen::Dynamic, kDirections>;
 
 // T's own block of the normal equations, factored.
 using PictureFactor = Eigen::SimplicialLLT<Eigen::SparseMatrix<float>>;
@@ -27,9 +28,10 @@ using PictureFactor = Eigen::SimplicialLLT<Eigen::SparseMatrix<float>>;
 struct CoarseSpace {
   // Of the poses' directions, by frame: columns.
   std::vector<Eigen::Matrix3d> axes;
-  Eigen::MatrixXf picture;  // T's part: cells x directions
+  ByDirection picture;  // T's part: a row a cell
   std::shared_ptr<const PictureFactor> factor;
-  Eigen::MatrixXd stiffness;  // W' A W without what is known beforehand
+  // W' A W without what is known beforehand
+  Eigen::Matrix<double, kDirections, kDirections> stiffness;
 
   bool empty() const { return axes.empty(); }
   // W' x

@@ -82,9 +82,9 @@ void PassThroughPicture(const PictureGrid& grid, const FrameSamples& samples,
 }
 
 // By how much each direction changes each sample, T aside.
-Eigen::MatrixXf ChangesByDirection(const FrameSamples& samples,
-                                   const Eigen::Matrix3d& axes) {
-  Eigen::MatrixXf changes(samples.size(), kDirections);
+ByDirection ChangesByDirection(const FrameSamples& samples,
+                               const Eigen::Matrix3d& axes) {
+  ByDirection changes(samples.size(), kDirections);
   for (std::size_t a = 0; a < kQuadratic; ++a) {
     changes.col(static_cast<Eigen::Index>(a)) = AsVector(samples.by_shared[a]);
   }
@@ -423,13 +423,13 @@ void NormalEquations::AddCoarse(const Unknowns& in, Unknowns& out) {
 // `shared`: what pixels say of the shared parameters.
 void NormalEquations::InvertCoarse(const SharedMatrix& shared) {
   const auto columns = static_cast<Eigen::Index>(columns_);
-  Eigen::MatrixXd all = coarse_.stiffness;
-  if (coarse_.empty()) all = shared.topLeftCorner(columns, columns);
+  NormalMatrix all = shared.topLeftCorner(columns, columns);
+  if (!coarse_.empty()) all = coarse_.stiffness;
   all.diagonal().head(columns) +=
       Eigen::Map<const Eigen::VectorXd>(prior_.data(), columns);
   all.diagonal().array() += kLeast;
   if (!coarse_.empty() && !turns_) all.diagonal().tail<1>().array() += kHeld;
-  coarse_inverse_ = all.inverse();
+  coarse_inverse_ = SymmetricFactor(all).Inverse();
 }
 
 CoarseSpace NormalEquations::FindCoarseSpace(
@@ -442,54 +442,55 @@ CoarseSpace NormalEquations::FindCoarseSpace(
   }
   const auto cells = static_cast<Eigen::Index>(cells_);
   // What T does to undo each direction.
-  std::vector<Eigen::MatrixXf> undone(
-      kParts, Eigen::MatrixXf::Zero(cells, kDirections));
-  AccumulateParts([&](const FrameSamples& samples, std::size_t t,
-                      Unknowns& sums) {
-    Eigen::MatrixXf& picture = undone[PartOf(sums)];
-    const Eigen::MatrixXf changes = ChangesByDirection(samples, coarse.axes[t]);
-    VisitNodes(samples, [&](std::size_t i, float share,
-                            const SplinePlace& place, const auto& weights) {
-      const auto row = static_cast<Eigen::Index>(i);
-      for (Eigen::Index d = 0; d < changes.cols(); ++d) {
-        layers_.grid.Spread(-share * samples.weight[i] * changes(row, d), place,
-                            weights, picture.col(d).data());
-      }
-    });
-  });
+  std::vector<ByDirection> undone(kParts,
+                                  ByDirection::Zero(cells, kDirections));
+  AccumulateParts(
+      [&](const FrameSamples& samples, std::size_t t, Unknowns& sums) {
+        ByDirection& picture = undone[PartOf(sums)];
+        const ByDirection changes = ChangesByDirection(samples, coarse.axes[t]);
+        VisitNodes(samples, [&](std::size_t i, float share,
+                                const SplinePlace& place, const auto& weights) {
+          const auto row = static_cast<Eigen::Index>(i);
+          for (Eigen::Index d = 0; d < changes.cols(); ++d) {
+            layers_.grid.Spread(-share * samples.weight[i] * changes(row, d),
+                                place, weights, picture.col(d).data());
+          }
+        });
+      });
   for (std::size_t part = 1; part < kParts; ++part) undone[0] += undone[part];
   coarse.picture.resize(cells, kDirections);
   for (Eigen::Index d = 0; d < coarse.picture.cols(); ++d) {
     PreconditionPicture(undone[0].col(d).data(), coarse.picture.col(d).data());
   }
-  const Eigen::MatrixXd none = Eigen::MatrixXd::Zero(kDirections, kDirections);
-  std::vector<Eigen::MatrixXd> stiffness(kParts, none);
-  AccumulateParts(
-      [&](const FrameSamples& samples, std::size_t t, Unknowns& sums) {
-        Eigen::MatrixXf changes = ChangesByDirection(samples, coarse.axes[t]);
-        VisitNodes(samples, [&](std::size_t i, float share,
-                                const SplinePlace& place, const auto& weights) {
-          const auto row = static_cast<Eigen::Index>(i);
-          for (Eigen::Index d = 0; d < changes.cols(); ++d) {
-            changes(row, d) +=
-                share * layers_.grid.EvaluateSpline(
-                            coarse.picture.col(d).data(), place, weights);
-          }
-        });
-        const Eigen::MatrixXd exact = changes.cast<double>();
-        stiffness[PartOf(sums)] +=
-            exact.transpose() *
-            AsVector(samples.weight).cast<double>().asDiagonal() * exact;
-      });
-  coarse.stiffness = none;
-  for (const Eigen::MatrixXd& sum : stiffness) coarse.stiffness += sum;
-  Eigen::MatrixXf outside(cells, kDirections);
+  using Stiffness = decltype(coarse.stiffness);
+  std::vector<Stiffness> stiffness(kParts, Stiffness::Zero());
+  AccumulateParts([&](const FrameSamples& samples, std::size_t t,
+                      Unknowns& sums) {
+    ByDirection changes = ChangesByDirection(samples, coarse.axes[t]);
+    VisitNodes(samples, [&](std::size_t i, float share,
+                            const SplinePlace& place, const auto& weights) {
+      const auto row = static_cast<Eigen::Index>(i);
+      for (Eigen::Index d = 0; d < changes.cols(); ++d) {
+        changes(row, d) +=
+            share * layers_.grid.EvaluateSpline(coarse.picture.col(d).data(),
+                                                place, weights);
+      }
+    });
+    const auto exact = changes.cast<double>().eval();
+    const auto weighted =
+        (AsVector(samples.weight).cast<double>().asDiagonal() * exact).eval();
+    stiffness[PartOf(sums)] += exact.transpose().lazyProduct(weighted);
+  });
+  coarse.stiffness.setZero();
+  for (const Stiffness& sum : stiffness) coarse.stiffness += sum;
+  ByDirection outside(cells, kDirections);
   for (Eigen::Index d = 0; d < outside.cols(); ++d) {
     picture_prior_.Multiply(coarse.picture.col(d).data(),
                             outside.col(d).data());
   }
   outside = variance_ * outside + kLeastCell * coarse.picture;
-  coarse.stiffness += (outside.transpose() * coarse.picture).cast<double>();
+  coarse.stiffness +=
+      outside.transpose().lazyProduct(coarse.picture).cast<double>();
   return coarse;
 }
 

@@ -24,6 +24,7 @@
 #include "layers/still_evidence.h"
 #include "layers/texture.h"
 #include "layers/unknowns.h"
+#include "numbers/symmetric_factor.h"
 
 namespace touchdown::vision::layers {
 
@@ -98,7 +99,7 @@ class NormalEquations {
 
   // The preconditioner.
   std::vector<Eigen::Matrix3d> pose_inverse_;
-  Eigen::MatrixXd coarse_inverse_;
+  NormalMatrix coarse_inverse_;
   std::shared_ptr<const PictureFactor> picture_factor_;
   std::vector<float> still_inverse_;
 };

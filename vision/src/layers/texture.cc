@@ -49,6 +49,25 @@ double RateOf(double correlation, double lag_px) {
   return std::exp(0.5 * (low + high));
 }
 
+// Gram and Schmidt's process, each column twice: then orthogonal to rounding
+// (L. Giraud, J. Langou, M. Rozloznik, Comput. Math. Appl. 50, 2005). A column
+// that those before it span becomes zero. Eigen's factorisations of a matrix
+// this tall take the compiler seconds.
+Eigen::MatrixXd MakeOrthonormal(Eigen::MatrixXd columns) {
+  constexpr double kSpanned = 1e-9;  // of its length: rounding is 1e-16
+  for (Eigen::Index k = 0; k < columns.cols(); ++k) {
+    const double length = columns.col(k).norm();
+    const auto before = columns.leftCols(k);
+    for (int pass = 0; pass < 2; ++pass) {
+      const Eigen::VectorXd along = before.transpose() * columns.col(k);
+      columns.col(k) -= before * along;
+    }
+    const double left = columns.col(k).norm();
+    columns.col(k) *= left > kSpanned * length ? 1.0 / left : 0.0;
+  }
+  return columns;
+}
+
 }  // namespace
 
 double UnitVariance(double rate) { return CovarianceOfUnit(rate, 0.0); }
@@ -82,8 +101,7 @@ PicturePrior::PicturePrior(const PictureGrid& grid, const Texture& texture)
     }
   }
   slopes_.setFromTriplets(slopes.begin(), slopes.end());
-  basis_ = terms.householderQr().householderQ() *
-           Eigen::MatrixXd::Identity(terms.rows(), terms.cols());
+  basis_ = MakeOrthonormal(std::move(terms));
 }
 
 void PicturePrior::RemoveQuadratic(Eigen::VectorXf& x) const {

@@ -1,13 +1,13 @@
 #include "outline/hider.h"
 
 #include <Eigen/Core>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <numbers>
 #include <utility>
 
+#include "numbers/symmetric_factor.h"
 #include "outline/outline_pixels.h"
 
 namespace touchdown::vision {
@@ -140,7 +140,7 @@ std::optional<OutlineJob> OnPath(std::span<const Fitted* const> fits,
   const double cosine = std::cos(ground_angle_rad);
   const double sine = std::sin(ground_angle_rad);
   const auto n = static_cast<Eigen::Index>(fits.size());
-  Eigen::MatrixXd powers(n, 3);
+  Eigen::MatrixX3d powers(n, 3);
   Eigen::VectorXd along(n);
   Eigen::VectorXd down(n);
   Eigen::VectorXd angle(n);
@@ -156,10 +156,10 @@ std::optional<OutlineJob> OnPath(std::span<const Fitted* const> fits,
     angle[i] = f.fit.outline.angle_rad;
   }
   const auto fit = [&](const Eigen::VectorXd& values, Eigen::Index terms) {
-    const Eigen::VectorXd curve =
-        powers.leftCols(terms).colPivHouseholderQr().solve(values);
-    const double off =
-        (values - powers.leftCols(terms) * curve).cwiseAbs().maxCoeff();
+    const auto rows = powers.leftCols(terms);
+    const SymmetricFactor normal(rows.transpose().lazyProduct(rows));
+    const NormalVector curve = normal.Solve(rows.transpose() * values);
+    const double off = (values - rows * curve).cwiseAbs().maxCoeff();
     return std::pair(curve, off);
   };
   const auto [x, off_x] = fit(along, 2);

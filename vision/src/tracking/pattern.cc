@@ -1,6 +1,5 @@
 #include "tracking/pattern.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
@@ -9,6 +8,7 @@
 
 #include "footage/box_around.h"
 #include "numbers/robust.h"
+#include "numbers/symmetric_factor.h"
 #include "outline/outline_pixels.h"
 
 namespace touchdown::vision {
@@ -403,8 +403,7 @@ std::optional<PatternPose> Pattern::Register(const PatternView& view,
       // Parameters that are held get a unit diagonal.
       if (!last) normal(kShiftX, kShiftX) = normal(kShiftY, kShiftY) = 1.0;
       if (!last || !turns_) normal(kTurn, kTurn) = 1.0;
-      const Eigen::LDLT<Matrix> factor(normal);
-      p = factor.solve(right);
+      p = SymmetricFactor(normal).Solve(right);
       if (!p.allFinite()) return std::nullopt;
       light = {p[0], p[1], p[2], p[3]};
       // Factor of the light, either way: no lamp's changes are larger. Beyond
@@ -427,9 +426,8 @@ std::optional<PatternPose> Pattern::Register(const PatternView& view,
     pose.angle_rad += turn;
     if (std::max({std::abs(dx), std::abs(dy), std::abs(turn) * reach}) <
         (2 * round < kMaxRounds ? kConverged_px : kCycle_px)) {
-      const Matrix covariance =
-          Eigen::LDLT<Matrix>(normal).solve(Matrix::Identity()) *
-          (scale * scale) / (light.gain * light.gain);
+      const Matrix covariance = SymmetricFactor(normal).Inverse() *
+                                (scale * scale) / (light.gain * light.gain);
       if (!covariance.allFinite() || !(covariance(kShiftX, kShiftX) > 0.0) ||
           !(covariance(kShiftY, kShiftY) > 0.0)) {
         return std::nullopt;
