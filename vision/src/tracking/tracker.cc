@@ -16,6 +16,7 @@
 #include "tracking/follow_in_layers.h"
 #include "tracking/follow_pattern.h"
 #include "tracking/layered_track.h"
+#include "tracking/seen_rectangle.h"
 #include "tracking/whole_body.h"
 
 namespace touchdown::vision {
@@ -267,6 +268,13 @@ void FollowWhole(Clip& clip, const TrackOptions& options, const Look& look,
 // the most.
 constexpr double kLeastExplained = 0.85;
 
+// Of the change, by a right track of a block whose size nobody stated. More: a
+// second fit, which costs time only; less: a wrong outline may be kept.
+constexpr double kUsuallyExplained = 0.975;
+
+// Of the change, by a rectangle that was taken for what is seen.
+constexpr double kLeastOfSeen = 0.95;
+
 // The share of all that changes in the clip that a track explains
 // (explained_change.h); 0 where it is not of the stated size.
 double ShareExplained(Clip& clip, const TrackOptions& options,
@@ -303,6 +311,73 @@ core::Expected<TrackResult> StartInLayers(Clip& clip,
   return InLayers(clip, options, std::move(*started));
 }
 
+// The rectangle that is seen along a track's poses, and the background without
+// it. Absent where it has no end.
+core::Expected<TrackResult> LookAlongPoses(Clip& clip,
+                                           const TrackOptions& options,
+                                           const Track& track,
+                                           const Background& fallback) {
+  // Of the sides, beyond the outline: what it may have left out. More looks at
+  // what stands beside the body. Not studied.
+  constexpr double kMargin = 0.2;
+  constexpr int kMostRounds = 4;  // twice the sides
+  TrackResult out;
+  out.track = track;
+  for (int round = 0; round < kMostRounds; ++round) {
+    Track wide = out.track;
+    wide.body.half_long_px.value *= 1.0 + kMargin;
+    wide.body.half_short_px.value *= 1.0 + kMargin;
+    out.background = EstimateMaskedBackground(
+        clip, FindTrackCovers(clip, options, wide), fallback,
+        ChooseBackgroundOptions(clip, options));
+    const auto seen = TakeSeenRectangle(clip, out.background, wide);
+    if (!seen) return core::AbsentBecause("too little of the body is seen");
+    out.track = seen->track;
+    if (!seen->goes_on) return out;
+  }
+  return core::AbsentBecause("what is seen along the poses has no end");
+}
+
+// Layers from the rectangle that is seen along the poses of `layered`; all else
+// is that of the outlines.
+core::Expected<TrackResult> InSeenRectangle(Clip& clip,
+                                            const TrackOptions& options,
+                                            const TrackResult& layered,
+                                            const TrackResult& outlines) {
+  auto seen = LookAlongPoses(clip, options, layered.track, outlines.background);
+  if (!seen) return seen;
+  Track start = outlines.track;
+  start.poses = std::move(seen->track.poses);
+  start.body.half_long_px = seen->track.body.half_long_px;
+  start.body.half_short_px = seen->track.body.half_short_px;
+  seen->track = std::move(start);
+  return InLayers(clip, options, std::move(*seen));
+}
+
+// A result of layers, and the share of the change that it explains.
+struct Explained {
+  TrackResult result;
+  double share = 0.0;
+};
+
+// A block's outline that was led astray explains less than usual. The rectangle
+// that is seen is followed, and once more with better poses.
+Explained ImproveOutline(Clip& clip, const TrackOptions& options,
+                         const TrackResult& outlines, TrackResult layered,
+                         double share) {
+  constexpr int kMostRounds = 3;  // two were enough in the clips looked at
+  Explained best{std::move(layered), share};
+  for (int round = 0; round < kMostRounds && best.share < kUsuallyExplained;
+       ++round) {
+    auto again = InSeenRectangle(clip, options, best.result, outlines);
+    if (!again) break;
+    const double then = ShareExplained(clip, options, again->track);
+    if (then <= best.share) break;
+    best = {std::move(*again), then};
+  }
+  return best;
+}
+
 // Replaces the result's outlines of a stated body by the two-layer fit: from
 // these outlines or, where they may be those of a ghost, from a layered start:
 // `started`, where it was made already.
@@ -330,11 +405,18 @@ bool TakeLayers(Clip& clip, const TrackOptions& options, double most_covered,
       best = std::move(*started);
     }
   }
-  // What was followed of a block may be a part of it.
   if (!options.size && best &&
-      best->track.body.kind == core::BodyKind::kRectangle &&
-      ShareExplained(clip, options, best->track) < kLeastExplained) {
-    return false;
+      best->track.body.kind == core::BodyKind::kRectangle) {
+    double share = ShareExplained(clip, options, best->track);
+    if (share < kUsuallyExplained) {
+      auto better = ImproveOutline(clip, options, result, *best, share);
+      if (better.share > kLeastOfSeen) {
+        best = std::move(better.result);
+        share = better.share;
+      }
+    }
+    // What was followed may be a part of the block.
+    if (share < kLeastExplained) return false;
   }
   // Share of the outlines' frames that layers must keep. Smaller: frames are
   // lost for nothing; larger: a few bad frames refuse the better model. Not

@@ -1,0 +1,184 @@
+#include "tracking/seen_rectangle.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <numbers>
+#include <opencv2/imgproc.hpp>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "layers/shape_cover.h"
+#include "tracking/layer_pictures.h"
+
+namespace touchdown::vision {
+namespace {
+
+using layers::LayerPose;
+using layers::PictureStack;
+using layers::Shape;
+
+// D on a grid of pixels over the body's coordinates.
+class MeanDifference {
+ public:
+  explicit MeanDifference(const Shape& shape)
+      : reach_x_(static_cast<int>(std::ceil(shape.half_long))),
+        reach_y_(static_cast<int>(std::ceil(shape.half_short))),
+        cells_(static_cast<std::size_t>(columns()) *
+               static_cast<std::size_t>(rows())) {}
+
+  int columns() const { return 2 * reach_x_ + 1; }
+  int rows() const { return 2 * reach_y_ + 1; }
+  double x_of(int column) const { return column - reach_x_; }
+  double y_of(int row) const { return row - reach_y_; }
+  // Absent where too few frames tell.
+  std::optional<double> At(int column, int row) const {
+    constexpr int kLeastFrames = 3;  // one or two may be an outlier's
+    const Cell& cell = cells_[Index(column, row)];
+    if (cell.frames < kLeastFrames) return std::nullopt;
+    return cell.sum / cell.frames;
+  }
+
+  void Add(const PictureStack& stack, std::size_t picture,
+           const LayerPose& pose, const Background& background) {
+    const core::PixelRect& window = stack.windows[picture];
+    const double cosine = std::cos(pose.angle_rad);
+    const double sine = std::sin(pose.angle_rad);
+    for (int row = 0; row < rows(); ++row) {
+      for (int column = 0; column < columns(); ++column) {
+        const double along = x_of(column);
+        const double across = y_of(row);
+        const auto x = static_cast<std::int32_t>(
+            std::lround(pose.x + cosine * along - sine * across));
+        const auto y = static_cast<std::int32_t>(
+            std::lround(pose.y + sine * along + cosine * across));
+        if (x < window.x || y < window.y || x >= window.x + window.width ||
+            y >= window.y + window.height || !background.known_at(x, y)) {
+          continue;
+        }
+        Cell& cell = cells_[Index(column, row)];
+        cell.sum += static_cast<double>(
+            stack.WindowRow(picture, y)[x - window.x] - background.at(x, y));
+        ++cell.frames;
+      }
+    }
+  }
+
+ private:
+  struct Cell {
+    double sum = 0.0;
+    int frames = 0;
+  };
+  std::size_t Index(int column, int row) const {
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns()) +
+           static_cast<std::size_t>(column);
+  }
+
+  int reach_x_;
+  int reach_y_;
+  std::vector<Cell> cells_;
+};
+
+// The places that differ, most of whose neighbours do, too.
+std::vector<cv::Point2f> ListSeen(const MeanDifference& difference,
+                                  double noise_dn) {
+  std::vector<double> sizes;
+  for (int row = 0; row < difference.rows(); ++row) {
+    for (int column = 0; column < difference.columns(); ++column) {
+      if (const auto d = difference.At(column, row)) {
+        sizes.push_back(std::abs(*d));
+      }
+    }
+  }
+  std::vector<cv::Point2f> seen;
+  if (sizes.empty()) return seen;
+  // Of the difference that one place in ten exceeds. Parts of a face are
+  // fainter than others; a still picture is off by less. Not studied.
+  constexpr double kOfStrong = 0.1;
+  const auto strong =
+      sizes.begin() + static_cast<std::ptrdiff_t>(9 * sizes.size() / 10);
+  std::nth_element(sizes.begin(), strong, sizes.end());
+  const double least = std::max(kOfStrong * *strong, noise_dn);
+  const auto differs = [&](int column, int row) {
+    const auto d = difference.At(column, row);
+    return d && std::abs(*d) > least;
+  };
+  for (int row = 1; row + 1 < difference.rows(); ++row) {
+    for (int column = 1; column + 1 < difference.columns(); ++column) {
+      int count = 0;
+      for (int j = -1; j <= 1; ++j) {
+        for (int i = -1; i <= 1; ++i) count += differs(column + i, row + j);
+      }
+      constexpr int kMost = 5;  // of nine
+      if (count < kMost) continue;
+      seen.emplace_back(static_cast<float>(difference.x_of(column)),
+                        static_cast<float>(difference.y_of(row)));
+    }
+  }
+  return seen;
+}
+
+}  // namespace
+
+std::optional<SeenRectangle> TakeSeenRectangle(Clip& clip,
+                                               const Background& background,
+                                               const Track& track) {
+  // Noise is a seventh in the mean of so many; more cost time.
+  constexpr std::size_t kMostFrames = 48;
+  const Shape shape{false, track.body.half_long_px.value,
+                    track.body.half_short_px.value};
+  LayerPath path;
+  for (const std::size_t i : SpreadEvenly(track.poses.size(), kMostFrames)) {
+    const Pose& pose = track.poses[i];
+    path.frames.push_back(pose.frame);
+    path.poses.push_back({pose.centre.x_px, pose.centre.y_px, pose.angle_rad});
+  }
+  const PictureStack stack = ReadAround(clip, path, shape);
+  MeanDifference difference(shape);
+  for (std::size_t t = 0; t < path.poses.size(); ++t) {
+    difference.Add(stack, t, path.poses[t], background);
+  }
+  // Standard deviations of a mean: more, and a faint face is not seen.
+  constexpr double kSigmas = 4.0;
+  const double noise_dn =
+      kSigmas * std::sqrt(background.UsualVariance() /
+                          static_cast<double>(path.frames.size()));
+  const std::vector<cv::Point2f> seen = ListSeen(difference, noise_dn);
+  constexpr std::size_t kLeastPlaces = 20;  // px: fewer make no rectangle
+  if (seen.size() < kLeastPlaces) return std::nullopt;
+  const cv::RotatedRect least = cv::minAreaRect(seen);
+  double turn = static_cast<double>(least.angle) * std::numbers::pi / 180.0;
+  cv::Size2f sides = least.size;
+  if (sides.width < sides.height) {
+    std::swap(sides.width, sides.height);
+    turn += 0.5 * std::numbers::pi;
+  }
+  // To the nearest of the attitudes that look alike.
+  turn = std::remainder(turn, std::numbers::pi);
+  SeenRectangle out{track};
+  out.track.body.half_long_px.value = 0.5 * static_cast<double>(sides.width);
+  out.track.body.half_short_px.value = 0.5 * static_cast<double>(sides.height);
+  // px: neighbours are asked for, and a start is no better.
+  constexpr float kEnd_px = 2.0F;
+  const auto end_x = static_cast<float>(difference.x_of(difference.columns()));
+  const auto end_y = static_cast<float>(difference.y_of(difference.rows()));
+  out.goes_on =
+      std::any_of(seen.begin(), seen.end(), [&](const cv::Point2f& place) {
+        return std::abs(place.x) > end_x - 1.0F - kEnd_px ||
+               std::abs(place.y) > end_y - 1.0F - kEnd_px;
+      });
+  const auto x = static_cast<double>(least.center.x);
+  const auto y = static_cast<double>(least.center.y);
+  for (Pose& pose : out.track.poses) {
+    const double cosine = std::cos(pose.angle_rad);
+    const double sine = std::sin(pose.angle_rad);
+    pose.centre.x_px += cosine * x - sine * y;
+    pose.centre.y_px += sine * x + cosine * y;
+    pose.angle_rad += turn;
+  }
+  return out;
+}
+
+}  // namespace touchdown::vision
