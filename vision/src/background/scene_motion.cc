@@ -293,7 +293,7 @@ SceneMotion SceneReference::Fit(const core::Frame& frame,
       Unknowns j;
       j << out.gain * Slopes(points_[i]),
           -static_cast<double>(points_[i].level);
-      information.selfadjointView<Eigen::Lower>().rankUpdate(j, weight);
+      information += weight * j * j.transpose();
       pull -= weight * off * j;
     }
     const SymmetricFactor factor(information);

@@ -290,9 +290,9 @@ double Pattern::Mismatch(const PatternView& view, const Pose& at,
   // not be below `least`: a bad place is known by its first nodes. The factor
   // covers the rounding of the sum.
   constexpr double kRounding = 1.0 + 1e-12;
-  const double enough =
-      kRounding * least * static_cast<double>((own_.size() + 2) / 3);
   // Every third node chooses a start well enough.
+  const std::size_t looked_at = (own_.size() + 2) / 3;
+  const double enough = kRounding * least * static_cast<double>(looked_at);
   for (std::size_t k = 0; k < own_.size() && sum < enough; k += 3) {
     const Node& node = nodes_[own_[k]];
     const core::PixelPoint p = LocatePlace(at, axes, node.x_px, node.y_px);
@@ -321,11 +321,13 @@ std::optional<PatternPose> Pattern::Register(const PatternView& view,
     constexpr double kSearchStep_px = 1.0;
     double least =
         Mismatch(view, start, std::numeric_limits<double>::infinity());
-    for (double y = -within_px; y <= within_px; y += kSearchStep_px) {
-      for (double x = -within_px; x <= within_px; x += kSearchStep_px) {
+    const auto steps =
+        static_cast<int>(std::floor(2.0 * within_px / kSearchStep_px));
+    for (int j = 0; j <= steps; ++j) {
+      for (int i = 0; i <= steps; ++i) {
         Pose other = start;
-        other.centre.x_px += x;
-        other.centre.y_px += y;
+        other.centre.x_px += i * kSearchStep_px - within_px;
+        other.centre.y_px += j * kSearchStep_px - within_px;
         if (const double m = Mismatch(view, other, least); m < least) {
           least = m;
           pose = other;
@@ -396,10 +398,9 @@ std::optional<PatternPose> Pattern::Register(const PatternView& view,
             sx * node.y_px - sy * node.x_px;
         if (!last) row.tail<3>().setZero();
         if (!turns_) row[kTurn] = 0.0;
-        normal.selfadjointView<Eigen::Lower>().rankUpdate(row, w);
+        normal += w * row * row.transpose();
         right += w * value[k] * row;
       }
-      normal = Matrix(normal.selfadjointView<Eigen::Lower>());
       // Parameters that are held get a unit diagonal.
       if (!last) normal(kShiftX, kShiftX) = normal(kShiftY, kShiftY) = 1.0;
       if (!last || !turns_) normal(kTurn, kTurn) = 1.0;
