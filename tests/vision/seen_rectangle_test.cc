@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <optional>
 
 #include "tests/vision/drawn_block.h"
 #include "touchdown/vision/background/background.h"
@@ -52,11 +53,15 @@ Track Astray(const DrawnBlock& block, double sides) {
   return track;
 }
 
+std::optional<SeenRectangle> Take(const DrawnBlock& block, const Track& track) {
+  const auto clip = DrawBlock(block);
+  return TakeSeenRectangle(*clip, EstimateBackground(*clip, 0, block.frames),
+                           track);
+}
+
 TEST(TakeSeenRectangle, FindsTheBlockFromAnOutlineThatWasLedAstray) {
   const DrawnBlock block = Striped();
-  const auto clip = DrawBlock(block);
-  const Background background = EstimateBackground(*clip, 0, block.frames);
-  const auto seen = TakeSeenRectangle(*clip, background, Astray(block, 1.4));
+  const auto seen = Take(block, Astray(block, 1.4));
   ASSERT_TRUE(seen);
   EXPECT_FALSE(seen->goes_on);
   // A tenth of the contrast is seen 1.3 blurs beyond an edge.
@@ -75,20 +80,16 @@ TEST(TakeSeenRectangle, FindsTheBlockFromAnOutlineThatWasLedAstray) {
 
 TEST(TakeSeenRectangle, SaysThatABlockGoesOnBeyondATrackTooNarrow) {
   const DrawnBlock block = Striped();
-  const auto clip = DrawBlock(block);
-  const Background background = EstimateBackground(*clip, 0, block.frames);
-  const auto seen = TakeSeenRectangle(*clip, background, Astray(block, 0.8));
+  const auto seen = Take(block, Astray(block, 0.8));
   ASSERT_TRUE(seen);
   EXPECT_TRUE(seen->goes_on);
 }
 
 TEST(TakeSeenRectangle, NothingIsSeenWhereNoBodyIs) {
   const DrawnBlock block = Striped();
-  const auto clip = DrawBlock(block);
-  const Background background = EstimateBackground(*clip, 0, block.frames);
   Track elsewhere = Astray(block, 0.5);
   for (Pose& pose : elsewhere.poses) pose.centre.y_px = 15.0;
-  EXPECT_FALSE(TakeSeenRectangle(*clip, background, elsewhere));
+  EXPECT_FALSE(Take(block, elsewhere));
 }
 
 }  // namespace

@@ -162,12 +162,13 @@ std::optional<SeenRectangle> TakeSeenRectangle(Clip& clip,
   out.track.body.half_short_px.value = 0.5 * static_cast<double>(sides.height);
   // px: neighbours are asked for, and a start is no better.
   constexpr float kEnd_px = 2.0F;
-  const auto end_x = static_cast<float>(difference.x_of(difference.columns()));
-  const auto end_y = static_cast<float>(difference.y_of(difference.rows()));
+  const auto end_x =
+      static_cast<float>(difference.x_of(difference.columns() - 1)) - kEnd_px;
+  const auto end_y =
+      static_cast<float>(difference.y_of(difference.rows() - 1)) - kEnd_px;
   out.goes_on =
       std::any_of(seen.begin(), seen.end(), [&](const cv::Point2f& place) {
-        return std::abs(place.x) > end_x - 1.0F - kEnd_px ||
-               std::abs(place.y) > end_y - 1.0F - kEnd_px;
+        return std::abs(place.x) > end_x || std::abs(place.y) > end_y;
       });
   const auto x = static_cast<double>(least.center.x);
   const auto y = static_cast<double>(least.center.y);
