@@ -272,7 +272,8 @@ constexpr double kLeastExplained = 0.85;
 // second fit, which costs time only; less: a wrong outline may be kept.
 constexpr double kUsuallyExplained = 0.975;
 
-// Of the change, by a rectangle that was taken for what is seen.
+// Of the change, by a rectangle that was taken for what is seen. Smaller keeps
+// parts of blocks (one explained 0.94), larger loses right ones (0.96).
 constexpr double kLeastOfSeen = 0.95;
 
 // The share of all that changes in the clip that a track explains
