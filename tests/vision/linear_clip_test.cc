@@ -68,10 +68,13 @@ TEST(LinearClip, LightIsThePowerOfTheLevel) {
   }
 }
 
-TEST(LinearClip, OfGammaOneIsTheSameOnAFinerScale) {
+TEST(LinearClip, OfGammaOneIsTheSameAndKnownToBeLight) {
   const auto clip = MakeLinear(std::make_unique<Ramp>(8), 1.0);
+  EXPECT_TRUE(clip->info().gamma_is_known);
+  EXPECT_EQ(clip->info().bit_depth, 8);
   const core::Frame frame = clip->Read(0);
-  EXPECT_NEAR(frame.at(5, 6), 101.0 * 4095.0 / 255.0, 0.51);
+  EXPECT_EQ(frame.bit_depth, 8);
+  EXPECT_EQ(frame.at(5, 6), 101.0);
 }
 
 TEST(LinearClip, AViewShowsTheSameAndKnowsThatItIsLight) {

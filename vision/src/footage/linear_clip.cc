@@ -35,9 +35,11 @@ class LinearClip final : public Clip {
   }
   LinearClip(Clip& clip, double gamma)
       : clip_(&clip), gamma_(gamma), info_(clip.info()) {
-    table_ = MakeTable(MakeLightScale(info_.bit_depth, gamma));
-    info_.bit_depth = LinearDepth(info_.bit_depth);
     info_.gamma_is_known = true;
+    if (gamma != 1.0) {
+      table_ = MakeTable(MakeLightScale(info_.bit_depth, gamma));
+      info_.bit_depth = LinearDepth(info_.bit_depth);
+    }
     set_cancellation(clip_->cancellation());
   }
 
@@ -67,6 +69,7 @@ class LinearClip final : public Clip {
   core::Frame ReadWindow(std::int64_t index,
                          const core::PixelRect& window) override {
     const core::Frame seen = clip_->Read(index, window);
+    if (table_.empty()) return seen;
     const auto width = static_cast<std::size_t>(window.width);
     samples_.resize(width * static_cast<std::size_t>(window.height));
     for (std::int32_t y = 0; y < window.height; ++y) {
@@ -100,7 +103,7 @@ class LinearClip final : public Clip {
   Clip* clip_;
   double gamma_;
   ClipInfo info_;
-  std::vector<std::uint16_t> table_;
+  std::vector<std::uint16_t> table_;  // empty: levels are light as they are
   std::vector<std::uint16_t> samples_;
 };
 

@@ -29,6 +29,7 @@ struct LightScale {
 // `gamma`: above 0.
 LightScale MakeLightScale(std::int32_t bit_depth, double gamma);
 
+// The clip in light. Of a gamma of 1 its levels as they are, known to be light.
 std::unique_ptr<Clip> MakeLinear(std::unique_ptr<Clip> clip, double gamma);
 
 // The same of a clip that must outlive the view.
