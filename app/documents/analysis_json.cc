@@ -206,10 +206,10 @@ Json BodyField(Writer& writer, const Analysis& analysis) {
   if (analysis.track) {
     const vision::BodyImage& image = analysis.track->body;
     if (body.kind == core::BodyKind::kSphere) {
-      json["radius_px"] = EstimateJson(image.radius_px);
+      json["radius_px"] = EstimateJson(vision::HalfLong(image));
     } else {
-      json["long_px"] = EstimateJson(image.half_long_px, 2.0);
-      json["short_px"] = EstimateJson(image.half_short_px, 2.0);
+      json["long_px"] = EstimateJson(vision::HalfLong(image), 2.0);
+      json["short_px"] = EstimateJson(vision::HalfShort(image), 2.0);
     }
   }
   return json;

@@ -174,6 +174,7 @@ Json TrackJson(const vision::Track& track) {
   Json json = {{"radius_px", EstimateJson(body.radius_px)},
                {"half_long_px", EstimateJson(body.half_long_px)},
                {"half_short_px", EstimateJson(body.half_short_px)},
+               {"gamma_sides_px", {body.gamma_long_px, body.gamma_short_px}},
                {"whole_px", body.whole_px},
                {"blur_px", body.blur_px},
                {"contrast_dn", body.contrast_dn},
@@ -222,6 +223,10 @@ vision::Track ReadTrack(const Json& json, core::BodyKind kind) {
   track.body.blur_px = json.at("blur_px");
   track.body.contrast_dn = json.at("contrast_dn");
   // Earlier documents have none.
+  if (json.contains("gamma_sides_px")) {
+    track.body.gamma_long_px = json["gamma_sides_px"].at(0);
+    track.body.gamma_short_px = json["gamma_sides_px"].at(1);
+  }
   track.body.u_common_px = json.value("u_common_px", 0.0);
   track.body.u_common_angle_rad = json.value("u_common_angle_rad", 0.0);
   track.body.u_texture_px = json.value("u_texture_px", track.body.u_common_px);

@@ -135,8 +135,10 @@ Judged Analyzer::Judge(const calib::GroundLine& ground,
     in_image = SeenGroundLine(SeenInPlane(camera_, Seen(track), ground),
                               *camera_.lens);
   }
-  judged.track = vision::Refine(*clip_, background_, track,
-                                {in_image, aspect_, options_.decoder_threads});
+  judged.track =
+      vision::Refine(*clip_, background_, track,
+                     {in_image, aspect_, track_options_.size.has_value(),
+                      options_.decoder_threads});
   // To give a large mapped file's pages back takes milliseconds: beside the
   // rest. Mostly no other line is tried.
   given_back_ =

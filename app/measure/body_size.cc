@@ -20,24 +20,33 @@ struct SizePair {
 };
 
 // The sizes that can be compared: of a whole body of the stated kind, where a
-// scale that the body itself did not make is known. Else empty.
+// scale that the body itself did not make is known. Else empty. What of a seen
+// size hangs on a gamma is part of its u then.
 std::vector<SizePair> SizePairs(vision::BodyImage& seen,
                                 const AnalyzeOptions& options) {
   std::vector<SizePair> pairs;
   const std::optional<vision::BodySize> stated = StatedSize(options);
   if (!stated || seen.whole_px > 0.0) return pairs;
+  const core::Estimate half_long = vision::HalfLong(seen);
+  const core::Estimate half_short = vision::HalfShort(seen);
   const auto add = [&](const char* name, core::Estimate& half,
+                       const core::Estimate& with_gamma,
                        const core::Estimate& whole,
                        const core::Estimate& metres) {
+    half = with_gamma;
     pairs.push_back({name, &half, core::Scaled(whole, 0.5), metres.value});
   };
   if (seen.kind == core::BodyKind::kSphere && options.diameter_m) {
-    add("diameter", seen.radius_px, stated->long_px, *options.diameter_m);
+    add("diameter", seen.radius_px, half_long, stated->long_px,
+        *options.diameter_m);
   } else if (seen.kind == core::BodyKind::kRectangle && options.long_m) {
     const core::Body sides = core::Rectangle(*options.long_m, *options.short_m);
-    add("long side", seen.half_long_px, stated->long_px, *sides.long_m);
-    add("short side", seen.half_short_px, stated->short_px, *sides.short_m);
+    add("long side", seen.half_long_px, half_long, stated->long_px,
+        *sides.long_m);
+    add("short side", seen.half_short_px, half_short, stated->short_px,
+        *sides.short_m);
   }
+  if (!pairs.empty()) seen.gamma_long_px = seen.gamma_short_px = 0.0;
   return pairs;
 }
 
@@ -161,14 +170,14 @@ core::Expected<calib::Scale> FindScale(const AnalyzeOptions& options,
   }
   if (options.diameter_m && image.kind == core::BodyKind::kSphere) {
     return calib::Scale{
-        Divide(core::Scaled(image.radius_px, 2.0), *options.diameter_m),
+        Divide(core::Scaled(vision::HalfLong(image), 2.0), *options.diameter_m),
         calib::ScaleSource::kBodySize};
   }
   if (options.long_m && image.kind == core::BodyKind::kRectangle) {
     // The long side is the better known one, relative to its length.
     const core::Estimate& a = *options.long_m;
     const core::Estimate& b = *options.short_m;
-    return calib::Scale{Divide(core::Scaled(image.half_long_px, 2.0),
+    return calib::Scale{Divide(core::Scaled(vision::HalfLong(image), 2.0),
                                a.value >= b.value ? a : b),
                         calib::ScaleSource::kBodySize};
   }
@@ -221,12 +230,12 @@ core::Body DetermineBody(const AnalyzeOptions& options,
   body.kind = image.kind;
   if (image.kind == core::BodyKind::kSphere) {
     body.diameter_m = options.diameter_m ? core::Measured(*options.diameter_m)
-                                         : metres(image.radius_px);
+                                         : metres(vision::HalfLong(image));
   } else if (options.long_m) {
     body = core::Rectangle(*options.long_m, *options.short_m);
   } else {
-    body.long_m = metres(image.half_long_px);
-    body.short_m = metres(image.half_short_px);
+    body.long_m = metres(vision::HalfLong(image));
+    body.short_m = metres(vision::HalfShort(image));
   }
   return body;
 }

@@ -16,6 +16,7 @@ namespace touchdown::accuracy {
 pipeline::AnalyzeOptions Told(const Case& c) {
   pipeline::AnalyzeOptions options;
   options.body_kind = c.film.thrown.kind;
+  options.gamma = 1.0;  // bounds are those of a linear camera
   options.scale_px_per_m = core::Estimate{
       c.told_px_per_m, kScaleRelativeU * c.told_px_per_m, std::nullopt};
   const auto whole = [](const core::Estimate& half) {

@@ -227,6 +227,34 @@ TEST(AnalyzeScale, FromTheBodysOwnSize) {
               4.0 * blocks.scale->px_per_m.u);
 }
 
+// The scene's camera is linear; nobody says so at first.
+TEST(AnalyzeScale, ASizeThatNobodyStatedOwesItsUToTheGamma) {
+  for (const core::BodyKind kind : {kSphere, kBlock}) {
+    const Film film = Default(kind);
+    const auto analyze = [&](const AnalyzeOptions& options) {
+      return AnalyzeClip(vision::OpenScene(filmed::BuildScene(film), 1),
+                         options);
+    };
+    AnalyzeOptions options = Known(film);
+    options.diameter_m = options.long_m = options.short_m = std::nullopt;
+    const Analysis unknown = analyze(options);
+    options.gamma = 1.0;
+    const Analysis known = analyze(options);
+    ASSERT_TRUE(unknown.body && known.body);
+    const auto size = [&](const Analysis& analysis) {
+      return kind == kSphere ? *analysis.body->diameter_m
+                             : *analysis.body->long_m;
+    };
+    // Apart by what hangs on the gamma alone; times are the same.
+    EXPECT_EQ(size(unknown).value, size(known).value);
+    EXPECT_GT(size(unknown).u, 3.0 * size(known).u);
+    EXPECT_EQ(unknown.contacts.first.contact.time_s->u,
+              known.contacts.first.contact.time_s->u);
+    ExpectTruth(unknown, film);
+    ExpectTruth(known, film);
+  }
+}
+
 // ---- Files --------------------------------------------------------------
 
 std::filesystem::path WriteFilm(const Film& film,

@@ -60,6 +60,30 @@ TEST(BodySize, StatementThatAgreesHardlyChangesWhatIsSeen) {
 
 // Twelve u apart, as a camera's gamma makes it: u reaches the statement, and
 // the sentence says so.
+TEST(BodySize, WhatHangsOnAGammaIsUOfTheSize) {
+  vision::Track seen = Seen(60.0, 20.0);
+  seen.body.gamma_long_px = 0.1;
+  seen.body.gamma_short_px = 0.1;
+  AnalyzeOptions options;
+  options.scale_px_per_m = core::Estimate{1000.0, 0.0};
+  const auto body =
+      DetermineBody(options, seen.body, FindScale(options, seen.body));
+  ASSERT_TRUE(body.long_m);
+  EXPECT_NEAR(body.long_m->u, 2e-4, 1e-6);
+  EXPECT_NEAR(body.short_m->u, 2e-4, 1e-6);
+  // A scale of the body's own size has it, too.
+  options = {};
+  options.long_m = core::Estimate{0.060, 0.0};
+  options.short_m = core::Estimate{0.020, 0.0};
+  const auto scale = FindScale(options, seen.body);
+  ASSERT_TRUE(scale);
+  EXPECT_NEAR(scale->px_per_m.u / scale->px_per_m.value, 0.1 / 30.0, 1e-5);
+  // A stated size leaves nothing of it to count twice.
+  const vision::Track sized = WithStatedSize(seen, Stated(0.060, 0.020));
+  EXPECT_EQ(sized.body.gamma_long_px, 0.0);
+  EXPECT_LT(sized.body.half_long_px.u, 0.05);
+}
+
 TEST(BodySize, ConflictGrowsUAndIsExplainedByTheOutline) {
   const AnalyzeOptions options = Stated(0.0889, 0.0342);
   const vision::Track seen = Seen(88.0, 33.3);

@@ -265,11 +265,12 @@ auto ListFields(const vision::Pose& pose) {
 }
 
 auto ListFields(const vision::BodyImage& body) {
-  const auto& [kind, radius, half_long, half_short, whole, blur, shutter,
-               u_common, u_common_angle, u_texture, gamma, contrast] = body;
-  return std::make_tuple(kind, radius, half_long, half_short, whole, blur,
-                         shutter, u_common, u_common_angle, u_texture, gamma,
-                         contrast);
+  const auto& [kind, radius, half_long, half_short, gamma_long, gamma_short,
+               whole, blur, shutter, u_common, u_common_angle, u_texture, gamma,
+               contrast] = body;
+  return std::make_tuple(kind, radius, half_long, half_short, gamma_long,
+                         gamma_short, whole, blur, shutter, u_common,
+                         u_common_angle, u_texture, gamma, contrast);
 }
 
 // All but its warnings, which stand among those of the analysis.
@@ -289,6 +290,8 @@ TEST(Replay, KeepsEveryFieldOfTheTrack) {
   track.body.radius_px = {1.5, 0.25, core::Interval{1.0, 2.0}};
   track.body.half_long_px = {20.5, 0.125, std::nullopt};
   track.body.half_short_px = {8.5, 0.125, std::nullopt};
+  track.body.gamma_long_px = 0.375;
+  track.body.gamma_short_px = -0.25;
   track.body.whole_px = 44.5;
   track.body.blur_px = 0.75;
   track.body.shutter_fraction = 0.5;

@@ -42,7 +42,7 @@ std::vector<GammaTrial> Trials(double lowest, double u,
   std::vector<GammaTrial> trials;
   for (const double at : log_gammas) {
     const double z = (at - lowest) / u;
-    trials.push_back({at, 7.0 + 0.5 * z * z, 0.0, 0.0});
+    trials.push_back({at, 7.0 + 0.5 * z * z, {}});
   }
   return trials;
 }
@@ -60,9 +60,9 @@ TEST(FindLeastLogGamma, NoneBeyondWhatCamerasHave) {
 
 // A cost that falls ever more steeply.
 TEST(FindLeastLogGamma, TheLastWhereNoParabolaHasALeast) {
-  EXPECT_EQ(FindLeastLogGamma(
-                {{0.0, 9.0, 0, 0}, {-0.35, 8.5, 0, 0}, {-0.8, 1.0, 0, 0}}),
-            -0.8);
+  EXPECT_EQ(
+      FindLeastLogGamma({{0.0, 9.0, {}}, {-0.35, 8.5, {}}, {-0.8, 1.0, {}}}),
+      -0.8);
 }
 
 TEST(LogGammaUncertainty, OfAParabolaWhateverTheOrder) {
@@ -80,20 +80,18 @@ TEST(LogGammaUncertainty, OfALinearCameraIsThatOfTheSlab) {
       const double x = slab * (i + 0.5) / kSteps;
       square += x * x * std::exp(-steep * x) / kSteps;
     }
-    EXPECT_NEAR(LogGammaUncertainty({{0.0, 3.0, 0.0, 0.0},
-                                     {-0.35, 3.0 + 0.35 * steep, 0.0, 0.0}}),
-                std::sqrt(square), 0.02 * std::sqrt(square))
+    EXPECT_NEAR(
+        LogGammaUncertainty({{0.0, 3.0, {}}, {-0.35, 3.0 + 0.35 * steep, {}}}),
+        std::sqrt(square), 0.02 * std::sqrt(square))
         << steep;
   }
 }
 
 TEST(LogGammaUncertainty, IsNeverMoreThanThatOfAnyGamma) {
   const double most = -std::log(0.3) / std::sqrt(3.0);
-  EXPECT_EQ(LogGammaUncertainty({{0.0, 3.0, 0.0, 0.0}}), most);
-  EXPECT_EQ(LogGammaUncertainty({{0.0, 3.0, 0.0, 0.0}, {-0.35, 3.0, 0.0, 0.0}}),
-            most);
-  EXPECT_EQ(LogGammaUncertainty({{0.0, 3.0, 0.0, 0.0}, {-0.35, 2.0, 0.0, 0.0}}),
-            most);
+  EXPECT_EQ(LogGammaUncertainty({{0.0, 3.0, {}}}), most);
+  EXPECT_EQ(LogGammaUncertainty({{0.0, 3.0, {}}, {-0.35, 3.0, {}}}), most);
+  EXPECT_EQ(LogGammaUncertainty({{0.0, 3.0, {}}, {-0.35, 2.0, {}}}), most);
 }
 
 }  // namespace

@@ -111,6 +111,23 @@ TEST(PlaneTrack, SupportOfARectangleByItsCorners) {
   EXPECT_EQ(LowestPointOffset(plane, 1.234), 0.0);
 }
 
+// By differences of the corner's direction, atan2(short, long).
+TEST(PlaneTrack, GammaTurnsACornerByTheDifferenceOfItsSides) {
+  PlaneTrack plane;
+  plane.half_long_px = 30.0;
+  plane.half_short_px = 10.0;
+  plane.gamma_long_px = 0.01;
+  plane.gamma_short_px = 0.01;
+  EXPECT_NEAR(CornerTurnByGamma(plane),
+              std::atan2(10.01, 30.01) - std::atan2(10.0, 30.0), 1e-7);
+  // Sides that move in their own ratio, and those of a square, leave it.
+  plane.gamma_long_px = 0.03;
+  EXPECT_NEAR(CornerTurnByGamma(plane), 0.0, 1e-12);
+  plane.half_short_px = 30.0;
+  plane.gamma_short_px = 0.03;
+  EXPECT_NEAR(CornerTurnByGamma(plane), 0.0, 1e-12);
+}
+
 TEST(PlaneTrack, UncertaintyTurnsWithTheLine) {
   Filming filming = Exact();
   filming.camera.roll_rad = 0.0;

@@ -130,8 +130,9 @@ void AddAnalyzeFlags(CLI::App& command, AnalyzeFlags& flags) {
             "frames per second of the recording, not of playback");
   AddOption(command, "--gamma", flags.gamma,
             "the camera's: its levels are light to this power (1: a linear "
-            "camera; most that make pictures to look at: 0.45); default: 1, or "
-            "what a block's outlines say");
+            "camera; most that make pictures to look at: 0.45); default: what "
+            "the outlines say, or unknown: taken for 1, and a size that is not "
+            "stated is less certain");
   AddOption(command, "--ground", flags.ground,
             "ground line through two points, X1,Y1,X2,Y2 in pixels");
   AddOption(command, "--ground-u-px", flags.ground_u_px,

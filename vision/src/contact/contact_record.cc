@@ -223,7 +223,8 @@ void FillAngles(const RecordContext& context, const Event& event,
     return std::atan2(reach, std::abs(ContactArm(track, p)));
   });
   Estimate& radius = *contact.radius_angle_rad;
-  radius.u = std::hypot(radius.u, context.u_common_face_rad);
+  radius.u =
+      std::hypot(radius.u, context.u_common_face_rad, CornerTurnByGamma(track));
 }
 
 void FillMotion(const RecordContext& context, const Event& event,
@@ -686,7 +687,7 @@ core::ContactRecord RecordFromStart(const RecordContext& context,
     contact.radius_angle_rad =
         Estimate{std::atan2(SupportHeight(track, face.value),
                             std::abs(LowestPointOffset(track, face.value))),
-                 face.u};
+                 std::hypot(face.u, CornerTurnByGamma(track))};
   }
   // Its own path is the line: its direction has no u of its own here.
   FillState(context, 0,

@@ -101,6 +101,8 @@ PlaneTrack SeenStraight(const Track& track, const calib::GroundLine& ground) {
   plane.u_half_px =
       sphere ? track.body.radius_px.u
              : std::fmax(track.body.half_long_px.u, track.body.half_short_px.u);
+  plane.gamma_long_px = track.body.gamma_long_px;
+  plane.gamma_short_px = track.body.gamma_short_px;
   plane.u_common_px = track.body.u_common_px;
   plane.u_common_face_rad = track.body.u_common_angle_rad;
   plane.u_texture_px = track.body.u_texture_px;
@@ -228,6 +230,13 @@ double LowestPointOffset(const PlaneTrack& track, double face_rad) {
   // c); this is its x'. On a face no corner is the lowest, and the offset is 0.
   return -std::copysign(track.half_long_px, s) * c +
          std::copysign(track.half_short_px, c) * s;
+}
+
+double CornerTurnByGamma(const PlaneTrack& track) {
+  const double a = track.half_long_px;
+  const double b = track.half_short_px;
+  return std::abs(a * track.gamma_short_px - b * track.gamma_long_px) /
+         (a * a + b * b);
 }
 
 }  // namespace touchdown::vision

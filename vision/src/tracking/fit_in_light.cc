@@ -7,12 +7,14 @@
 #include <utility>
 
 #include "touchdown/vision/footage/linear_clip.h"
+#include "tracking/unknown_gamma.h"
 
 namespace touchdown::vision {
 namespace {
 
 using layers::FitLayersOptions;
 using layers::LayerFit;
+using layers::LayerPose;
 using layers::Shape;
 
 // Of levels as they are, or of light.
@@ -79,13 +81,34 @@ LightFit FitLight(Clip& clip, const Background& background, const Shape& shape,
   return light;
 }
 
+// Where poses lie beside others of the same pictures, in the body's axes: the
+// mean.
+LayerPose MeanBeside(const std::vector<LayerPose>& poses,
+                     const std::vector<LayerPose>& others) {
+  LayerPose mean;
+  const double share = 1.0 / static_cast<double>(poses.size());
+  for (std::size_t t = 0; t < poses.size(); ++t) {
+    const double x = poses[t].x - others[t].x;
+    const double y = poses[t].y - others[t].y;
+    const double cosine = std::cos(others[t].angle_rad);
+    const double sine = std::sin(others[t].angle_rad);
+    mean.x += share * (cosine * x + sine * y);
+    mean.y += share * (cosine * y - sine * x);
+    mean.angle_rad += share * (poses[t].angle_rad - others[t].angle_rad);
+  }
+  return mean;
+}
+
 // What fits of one clip cost, in levels or in light.
 class GammaCost {
  public:
   // `levels`: the first fit, which the others are compared with.
   GammaCost(const Clip& clip, const layers::SharedPrior& prior,
             const LightFit& levels)
-      : clip_(clip), prior_(prior), noise_dn_(levels.fit.layers.noise_dn) {
+      : clip_(clip),
+        prior_(prior),
+        first_poses_(levels.fit.poses),
+        noise_dn_(levels.fit.layers.noise_dn) {
     // By which share the loss of a camera's own gamma exceeds the least, in
     // photographed clips: little where layers explain the levels to the noise,
     // more with what they do not explain, up to what it is in codecs' clips.
@@ -105,7 +128,8 @@ class GammaCost {
             MeasureLoss(fit) / unit_ +
                 CostOfSide(layers::kLong, shape.half_long) +
                 CostOfSide(layers::kShort, shape.half_short),
-            shape.half_long, shape.half_short};
+            {shape.half_long, shape.half_short,
+             MeanBeside(fit.fit.poses, first_poses_)}};
   }
 
  private:
@@ -137,6 +161,7 @@ class GammaCost {
 
   const Clip& clip_;
   const layers::SharedPrior& prior_;
+  std::vector<LayerPose> first_poses_;
   double noise_dn_ = 1.0;
   double unit_ = 1.0;  // of the loss: one standard deviation of gamma costs 1/2
 };
@@ -161,8 +186,6 @@ Parabola FitParabola(const GammaTrial& a, const GammaTrial& b,
   const double curvature = 2.0 * (bc - ab) / (c.log_gamma - a.log_gamma);
   return {0.5 * (a.log_gamma + b.log_gamma) - ab / curvature, curvature};
 }
-
-constexpr double kLeastGamma = 0.3;  // no camera has less
 
 }  // namespace
 
@@ -228,9 +251,10 @@ LightFit FitLevelsOrLight(Clip& clip, const Background& background,
     LightFit light =
         FitLight(clip, background, shape, std::exp(log_gamma), best, options);
     const GammaTrial trial = cost.Judge(light);
-    if (std::max(std::abs(trial.half_long_px - trials[0].half_long_px),
-                 std::abs(trial.half_short_px - trials[0].half_short_px)) >
-        most_px) {
+    const SidesInLight& in_levels = trials[0].sides;
+    if (std::max(std::abs(trial.sides.half_long_px - in_levels.half_long_px),
+                 std::abs(trial.sides.half_short_px -
+                          in_levels.half_short_px)) > most_px) {
       return;
     }
     const double least = FindCheapest(trials)->cost;
@@ -258,8 +282,15 @@ LightFit FitLevelsOrLight(Clip& clip, const Background& background,
                           });
   const double share =
       LogGammaUncertainty(trials) / (high->log_gamma - low->log_gamma);
-  best.u_long_px = std::abs(high->half_long_px - low->half_long_px) * share;
-  best.u_short_px = std::abs(high->half_short_px - low->half_short_px) * share;
+  const auto moved = [&, share](double SidesInLight::*value) {
+    return (high->sides.*value - low->sides.*value) * share;
+  };
+  best.u.half_long_px = moved(&SidesInLight::half_long_px);
+  best.u.half_short_px = moved(&SidesInLight::half_short_px);
+  const LayerPose& a = high->sides.pose;
+  const LayerPose& b = low->sides.pose;
+  best.u.pose = {(a.x - b.x) * share, (a.y - b.y) * share,
+                 (a.angle_rad - b.angle_rad) * share};
   return best;
 }
 

@@ -16,24 +16,29 @@
 
 namespace touchdown::vision {
 
+// What of a body hangs on the gamma: each edge moves by what lies on both sides
+// of it.
+struct SidesInLight {
+  double half_long_px = 0.0;
+  double half_short_px = 0.0;
+  layers::LayerPose pose;  // mean of all pictures, in the body's axes
+};
+
 struct LightFit {
   // Of the camera: evidence and layers are its light. Absent: levels.
   std::optional<double> gamma;
   std::unique_ptr<Clip> light;  // a view of the clip, with gamma alone
   LayerEvidence evidence;
   layers::LayerFit fit;
-  // Of the half sides: what they owe to a gamma that is not known better.
-  double u_long_px = 0.0;
-  double u_short_px = 0.0;
+  SidesInLight u;  // what they owe to a gamma that is not known better
 };
 
-// What a gamma costs: half of chi2, as a log likelihood has it; and the half
-// sides that go with it.
+// What a gamma costs: half of chi2, as a log likelihood has it; and the sides
+// that go with it.
 struct GammaTrial {
   double log_gamma = 0.0;
   double cost = 0.0;
-  double half_long_px = 0.0;
-  double half_short_px = 0.0;
+  SidesInLight sides;  // the pose: beside that of the first trial
 };
 
 // Where the parabola through three trials is least.

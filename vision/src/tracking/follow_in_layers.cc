@@ -289,32 +289,36 @@ Track WithLayers(const Track& track, const LightFit& fitted,
   const double texture_px =
       kCommonFactor * std::max(fit.common.x_px, fit.common.y_px);
   const double beyond_px = size ? OutlinesBeside(fit, *size) : 0.0;
+  const LayerPose& by_light = fitted.u.pose;
   out.body.u_texture_px =
-      std::hypot(texture_px, PlaceUncertaintyBeside(beyond_px));
+      std::hypot(std::hypot(texture_px, PlaceUncertaintyBeside(beyond_px)),
+                 by_light.x, by_light.y);
   out.body.u_common_px = std::hypot(kModel_px, out.body.u_texture_px);
   // Half of the sizes of raw clips of known truth were within 0.001, 0.95 of
   // them within 0.01.
   constexpr double kSizeU_px = 0.003;
   // A side that is held is as uncertain as the place of the outline.
-  const auto u_side = [&](double u_px, double u_light_px) {
-    return std::hypot(std::hypot(kSizeU_px, kModel_px), u_light_px,
+  const auto u_side = [&](double u_px) {
+    return std::hypot(kSizeU_px, kModel_px,
                       u_px > 0.0 ? kCommonFactor * u_px : texture_px);
   };
   if (turns) {
     out.body.u_common_angle_rad =
-        std::hypot(kCommonFactor * fit.common.angle_rad,
+        std::hypot(kCommonFactor * fit.common.angle_rad, by_light.angle_rad,
                    std::hypot(kModel_px, PlaceUncertaintyBeside(beyond_px)) /
                        shape.half_long);
   }
+  const auto side = [&](double half_px, double u_px) {
+    return core::Estimate{half_px, u_side(u_px)};
+  };
   if (shape.disc) {
-    out.body.radius_px = {shape.half_long,
-                          u_side(fit.common.long_px, fitted.u_long_px)};
+    out.body.radius_px = side(shape.half_long, fit.common.long_px);
   } else {
-    out.body.half_long_px = {shape.half_long,
-                             u_side(fit.common.long_px, fitted.u_long_px)};
-    out.body.half_short_px = {shape.half_short,
-                              u_side(fit.common.short_px, fitted.u_short_px)};
+    out.body.half_long_px = side(shape.half_long, fit.common.long_px);
+    out.body.half_short_px = side(shape.half_short, fit.common.short_px);
   }
+  out.body.gamma_long_px = fitted.u.half_long_px;
+  out.body.gamma_short_px = fitted.u.half_short_px;
   return out;
 }
 
@@ -405,7 +409,7 @@ bool HasPlainFace(Clip& clip, const Background& background, const Track& track,
   constexpr double kPlain = 1.05;
   return MedianMisfit(track.poses) <= kPlain ||
          MedianMisfit(Refine(clip, background, track,
-                             {std::nullopt, std::nullopt, threads})
+                             {std::nullopt, std::nullopt, true, threads})
                           .poses) <= kPlain;
 }
 

@@ -11,6 +11,7 @@
 #include "tracking/between_looks.h"
 #include "tracking/follow_pattern.h"
 #include "tracking/refiner.h"
+#include "tracking/unknown_gamma.h"
 
 namespace touchdown::vision {
 namespace {
@@ -203,6 +204,13 @@ Track Refine(Clip& clip, const Background& background, const Track& given,
         refined.body.half_short_px,
         {a.value * ratio.value,
          std::hypot(a.u * ratio.value, a.value * ratio.u), std::nullopt});
+  }
+  if (!refine.size_is_stated && !clip.info().gamma_is_known) {
+    // Sides whose ratio is stated move in that ratio.
+    BodyImage& body = refined.body;
+    body.gamma_long_px = UnknownShift(background, refined);
+    body.gamma_short_px =
+        body.gamma_long_px * (refine.aspect ? refine.aspect->value : 1.0);
   }
   refiner.MeasurePoses(refined);
   Unwrap(refined);

@@ -37,10 +37,12 @@ struct PlaneSample {
 
 struct PlaneTrack {
   core::BodyKind kind = core::BodyKind::kSphere;
-  double half_long_px = 0.0;   // rectangle; for a sphere both are the radius
-  double half_short_px = 0.0;  //
-  double u_half_px = 0.0;      // of the size
-  double u_common_px = 0.0;    // BodyImage's, of all poses together
+  double half_long_px = 0.0;    // rectangle; for a sphere both are the radius
+  double half_short_px = 0.0;   //
+  double u_half_px = 0.0;       // of the size
+  double gamma_long_px = 0.0;   // BodyImage's
+  double gamma_short_px = 0.0;  //
+  double u_common_px = 0.0;     // BodyImage's, of all poses together
   double u_common_face_rad = 0.0;
   double u_texture_px = 0.0;
   double blur_px = 0.0;
@@ -96,5 +98,9 @@ double SupportHeight(const PlaneTrack& track, double face_rad);
 // The lowest point of a rectangle at `face_rad`, from the centre, along x'.
 // (Its height is -SupportHeight.) 0 for a sphere and for a flush landing.
 double LowestPointOffset(const PlaneTrack& track, double face_rad);
+
+// Standard uncertainty of a corner's direction from the centre, of what a gamma
+// does to both half sides a, b alike:  |a db - b da| / (a^2 + b^2).
+double CornerTurnByGamma(const PlaneTrack& track);
 
 }  // namespace touchdown::vision

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -46,6 +47,11 @@ struct BodyImage {
   core::Estimate radius_px;      // sphere
   core::Estimate half_long_px;   // rectangle, half sides
   core::Estimate half_short_px;  //
+  // What of the half sides (of a sphere the first is the radius) hangs on a
+  // gamma that nobody stated and no stated size tells: standard uncertainties
+  // of one cause, with its signs, beside the u of the sizes.
+  double gamma_long_px = 0.0;
+  double gamma_short_px = 0.0;
   // Where the body shows as several parts that move as one, the outline is that
   // of the strongest part, and this is the length of the whole; else 0.
   double whole_px = 0.0;
@@ -67,6 +73,20 @@ struct BodyImage {
   std::optional<double> gamma;
   double contrast_dn = 0.0;  // body minus background, median over frames
 };
+
+// The half sides, of a sphere the radius, with all of their u.
+inline core::Estimate HalfLong(const BodyImage& body) {
+  core::Estimate half =
+      body.kind == core::BodyKind::kSphere ? body.radius_px : body.half_long_px;
+  half.u = std::hypot(half.u, body.gamma_long_px);
+  return half;
+}
+inline core::Estimate HalfShort(const BodyImage& body) {
+  if (body.kind == core::BodyKind::kSphere) return HalfLong(body);
+  core::Estimate half = body.half_short_px;
+  half.u = std::hypot(half.u, body.gamma_short_px);
+  return half;
+}
 
 struct Track {
   BodyImage body;

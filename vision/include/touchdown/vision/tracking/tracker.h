@@ -36,6 +36,11 @@ struct RefineOptions {
   // that lies on the ground hides one of its edges.
   std::optional<core::Estimate> aspect;
 
+  // Whether the caller compares the sizes with stated ones. Else they are
+  // measured by the picture alone, and their u holds what a gamma that nobody
+  // stated may do to outlines (ClipInfo::gamma_is_known).
+  bool size_is_stated = false;
+
   int threads = 0;  // 0: one for each core; affects speed only
 };
 
