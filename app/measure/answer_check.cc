@@ -19,6 +19,13 @@ std::string LostFrames(const vision::ExplainedChange& explained) {
                      explained.lost, explained.frames);
 }
 
+// Whether what is followed is a disc by its own picture, which may have holes
+// (a hoop). A rectangle's angles are those of its sides: it has to be seen.
+bool MayHaveHoles(const Analysis& analysis) {
+  return analysis.track && analysis.track->patterned &&
+         analysis.track->body.kind == core::BodyKind::kSphere;
+}
+
 AnswerCheck CheckExplained(const Analysis& analysis,
                            const AnswerCheckLimits& limits) {
   AnswerCheck check;
@@ -34,9 +41,8 @@ AnswerCheck CheckExplained(const Analysis& analysis,
   const vision::ExplainedChange& explained = *analysis.explained;
   // `!(a >= b)` and not `a < b`: a number that could not be computed is
   // refused, too.
-  const bool patterned = analysis.track && analysis.track->patterned;
   const double least =
-      patterned ? limits.least_near_patterned : limits.least_near;
+      MayHaveHoles(analysis) ? limits.least_near_with_holes : limits.least_near;
   if (!(explained.near >= least)) {
     check.verdict = Verdict::kRefused;
     check.reason = fmt::format(
@@ -132,7 +138,7 @@ AnswerCheck CheckShape(const Analysis& analysis,
     check.reason = analysis.explained.error().reason;
     return check;
   }
-  if (analysis.track && analysis.track->patterned) {
+  if (MayHaveHoles(analysis)) {
     check.reason = "the body is followed by its own picture, which has holes";
     return check;
   }

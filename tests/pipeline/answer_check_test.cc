@@ -80,6 +80,21 @@ TEST(AnswerCheck, RefusesWhatExplainsNothing) {
   EXPECT_THAT(entry.reason, HasSubstr("Q = -0.69"));
 }
 
+// A hoop explains half of what changes near its disc, and is followed; the
+// sides of a block that explains no more are not its own.
+TEST(AnswerCheck, OnlyADiscMayHaveHoles) {
+  for (const core::BodyKind kind :
+       {core::BodyKind::kSphere, core::BodyKind::kRectangle}) {
+    Analysis analysis = filmed::AnalyzeFilm(Default(kind));
+    ASSERT_TRUE(analysis.explained);
+    analysis.track->patterned = true;
+    analysis.explained->near = 0.55;
+    CheckAnswer(analysis);
+    EXPECT_EQ(analysis.contacts.first.contact.found,
+              kind == core::BodyKind::kSphere);
+  }
+}
+
 TEST(AnswerCheck, DoubtIsAWarning) {
   const Analysis analysis = WithNear(0.8);
   EXPECT_TRUE(analysis.contacts.first.contact.found);
