@@ -177,8 +177,8 @@ TEST(FollowInLayers, TheSizeOfABodyThatNobodyMeasured) {
         FollowInLayers(*clip, EstimateBackground(*clip, 0, frames),
                        RoughTrack(block, *clip, 0, frames), std::nullopt, 1);
     ASSERT_TRUE(track) << track.error().reason;
-    const core::Estimate& half_long = track->body.half_long_px;
-    const core::Estimate& half_short = track->body.half_short_px;
+    const core::Estimate half_long = HalfLong(track->body);
+    const core::Estimate half_short = HalfShort(track->body);
     EXPECT_NEAR(half_long.value, block.half_long_px, 3.0 * half_long.u);
     EXPECT_NEAR(half_short.value, block.half_short_px, 3.0 * half_short.u);
     EXPECT_NEAR(half_long.value, block.half_long_px, 0.15);

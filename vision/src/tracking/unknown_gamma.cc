@@ -60,49 +60,52 @@ std::vector<double> LevelsBehind(const Background& background,
   return levels;
 }
 
+// The part of the shift that both levels make.
+double ShiftByLevels(double first_dn, double second_dn) {
+  const double sum_dn = first_dn + second_dn;
+  return sum_dn > 0.0 ? (second_dn - first_dn) / sum_dn : 0.0;
+}
+
+// The part that gamma makes.
+double ShiftByGamma(double gamma) {
+  return std::sqrt(std::numbers::pi) / 3.0 * (1.0 / gamma - 1.0);
+}
+
+// Its mean square over the gammas of cameras: by y = 1 / gamma,
+//   the mean of (y - 1)^2 over log y = (y^2 / 2 - 2 y + log y) / log y
+// between 1 and the largest y.
+double MeanSquareShift() {
+  constexpr double kNotLinear = 0.5;  // of all cameras
+  const double y = 1.0 / kLeastGamma;
+  const double of_one = ShiftByGamma(0.5);  // y - 1 = 1
+  return kNotLinear * of_one * of_one *
+         (0.5 * y * y - 2.0 * y + 1.5 + std::log(y)) / std::log(y);
+}
+
 }  // namespace
 
 double EdgeShift(double first_dn, double second_dn, double blur_px,
                  double gamma) {
-  const double power = 1.0 / gamma;
-  const double first = std::pow(std::max(first_dn, 0.0), power);
-  const double second = std::pow(std::max(second_dn, 0.0), power);
-  if (first == second) return 0.0;
-  // The integral of level(c) over c, in closed form.
-  const double mean_dn =
-      (std::pow(second, gamma + 1.0) - std::pow(first, gamma + 1.0)) /
-      ((gamma + 1.0) * (second - first));
-  return 2.0 * std::sqrt(std::numbers::pi) * blur_px *
-         ((mean_dn - first_dn) / (second_dn - first_dn) - 0.5);
+  return blur_px * ShiftByGamma(gamma) * ShiftByLevels(first_dn, second_dn);
 }
 
 double UnknownShift(const Background& background, const Track& track) {
   const std::vector<double> behind = LevelsBehind(background, track);
   double body_dn = track.body.contrast_dn;
-  double weights = 0.0;
   for (const double level : behind) {
     body_dn += level / static_cast<double>(behind.size());
   }
   body_dn = std::clamp(body_dn, 0.0, background.full_scale_dn);
-  const auto weigh = [&](double level) {
-    return (body_dn - level) * (body_dn - level);
-  };
-  for (const double level : behind) weights += weigh(level);
-  if (!(weights > 0.0)) return 0.0;
-  // Of the mean over gammas; 8 differ from 100 by less than 1 %.
-  constexpr int kGammas = 8;
-  constexpr double kNotLinear = 0.5;  // of all cameras
-  double square = 0.0;
-  for (int k = 0; k < kGammas; ++k) {
-    const double gamma = std::pow(kLeastGamma, (k + 0.5) / kGammas);
-    double shift = 0.0;
-    for (const double level : behind) {
-      shift += weigh(level) / weights *
-               EdgeShift(level, body_dn, track.body.blur_px, gamma);
-    }
-    square += kNotLinear / kGammas * shift * shift;
+  double shift = 0.0;
+  double weights = 0.0;
+  for (const double level : behind) {
+    const double weight = (body_dn - level) * (body_dn - level);
+    weights += weight;
+    shift += weight * ShiftByLevels(level, body_dn);
   }
-  return std::sqrt(square);
+  if (!(weights > 0.0)) return 0.0;
+  return track.body.blur_px * std::abs(shift / weights) *
+         std::sqrt(MeanSquareShift());
 }
 
 }  // namespace touchdown::vision

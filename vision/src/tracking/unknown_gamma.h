@@ -7,8 +7,10 @@
 // (w + (b - w) c, with c normal in the distance and a blur of s) lies toward w,
 // to first order of least squares, by
 //   2 sqrt(pi) s (integral of (level(c) - w) / (b - w) over c in 0..1, - 1/2)
-// and no residual tells: a gamma and a shift change an edge in nearly the same
-// way. A stated size does.
+//     = sqrt(pi) / 3 s (1 / gamma - 1) (b - w) / (b + w)
+// to the second order of level(c), which between any two levels and down to a
+// gamma of 0.45 is within 7 % of the integral. No residual tells: a gamma and a
+// shift change an edge in nearly the same way. A stated size does.
 #pragma once
 
 #include "touchdown/vision/background/background.h"
@@ -21,8 +23,8 @@ namespace touchdown::vision {
 // logarithm.
 inline constexpr double kLeastGamma = 0.3;
 
-// px, of an edge between both levels, toward the first. Levels at least 0; the
-// blur as a standard deviation.
+// px, of an edge between both levels, toward the first. The blur as a standard
+// deviation.
 double EdgeShift(double first_dn, double second_dn, double blur_px,
                  double gamma);
 
