@@ -19,13 +19,6 @@ std::string LostFrames(const vision::ExplainedChange& explained) {
                      explained.lost, explained.frames);
 }
 
-// Whether what is followed is a disc by its own picture, which may have holes
-// (a hoop). A rectangle's angles are those of its sides: it has to be seen.
-bool MayHaveHoles(const Analysis& analysis) {
-  return analysis.track && analysis.track->patterned &&
-         analysis.track->body.kind == core::BodyKind::kSphere;
-}
-
 AnswerCheck CheckExplained(const Analysis& analysis,
                            const AnswerCheckLimits& limits) {
   AnswerCheck check;
@@ -41,8 +34,9 @@ AnswerCheck CheckExplained(const Analysis& analysis,
   const vision::ExplainedChange& explained = *analysis.explained;
   // `!(a >= b)` and not `a < b`: a number that could not be computed is
   // refused, too.
+  const bool patterned = analysis.track && analysis.track->patterned;
   const double least =
-      MayHaveHoles(analysis) ? limits.least_near_with_holes : limits.least_near;
+      patterned ? limits.least_near_patterned : limits.least_near;
   if (!(explained.near >= least)) {
     check.verdict = Verdict::kRefused;
     check.reason = fmt::format(
@@ -138,7 +132,9 @@ AnswerCheck CheckShape(const Analysis& analysis,
     check.reason = analysis.explained.error().reason;
     return check;
   }
-  if (MayHaveHoles(analysis)) {
+  // A rectangle's angles are those of its sides: it has to be seen.
+  if (analysis.track && analysis.track->patterned &&
+      analysis.track->body.kind == core::BodyKind::kSphere) {
     check.reason = "the body is followed by its own picture, which has holes";
     return check;
   }

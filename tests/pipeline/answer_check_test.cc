@@ -80,15 +80,15 @@ TEST(AnswerCheck, RefusesWhatExplainsNothing) {
   EXPECT_THAT(entry.reason, HasSubstr("Q = -0.69"));
 }
 
-// A hoop explains half of what changes near its disc, and is followed; the
-// sides of a block that explains no more are not its own.
+// Of a hoop that its own picture is followed by the inside is the wall; of a
+// block it means that the sides are not its own.
 TEST(AnswerCheck, OnlyADiscMayHaveHoles) {
   for (const core::BodyKind kind :
        {core::BodyKind::kSphere, core::BodyKind::kRectangle}) {
     Analysis analysis = filmed::AnalyzeFilm(Default(kind));
     ASSERT_TRUE(analysis.explained);
     analysis.track->patterned = true;
-    analysis.explained->near = 0.55;
+    analysis.explained->seen = 0.8;
     CheckAnswer(analysis);
     EXPECT_EQ(analysis.contacts.first.contact.found,
               kind == core::BodyKind::kSphere);
