@@ -6,6 +6,8 @@
 #include <sstream>
 
 #include "app/documents/analysis_json.h"
+#include "app/documents/named_word.h"
+#include "app/documents/options_json.h"
 #include "app/measure/judge.h"
 #include "app/text/json.h"
 #include "app/text/json_fields.h"
@@ -34,135 +36,12 @@ constexpr const char* kColumns =
 void Put(Json& json, const char* name, const std::optional<double>& value) {
   if (value) json[name] = *value;
 }
-void Put(Json& json, const char* name,
-         const std::optional<core::Estimate>& value) {
-  if (value) json[name] = EstimateJson(*value);
-}
-
-std::optional<core::Estimate> OptionalEstimate(const Json& json,
-                                               const char* name) {
-  if (!json.contains(name)) return std::nullopt;
-  return ReadEstimate(json.at(name));
-}
 // Returns a field, nothing where it is absent or null. Throws Json::exception
 // where it is of another type.
 template <class T>
 std::optional<T> Optional(const Json& json, const char* name) {
   if (!json.contains(name) || json.at(name).is_null()) return std::nullopt;
   return json.at(name).get<T>();
-}
-
-// Returns a whole number of 32 bits; `name` is for the message.
-std::int32_t Int32(const Json& json, const char* name) {
-  return WholeNumber<std::int32_t>(json, name);
-}
-
-// --- ground, options ---------------------------------------------------------
-
-// Writes the line as it was used: two points, and the reference point at which
-// its offset and its direction are uncorrelated.
-Json GroundJson(const calib::GroundLine& g) {
-  return {{"p1_px", {g.p1.x_px, g.p1.y_px}},
-          {"p2_px", {g.p2.x_px, g.p2.y_px}},
-          {"reference_px", {g.reference.x_px, g.reference.y_px}},
-          {"u_offset_px", g.u_offset_px},
-          {"u_angle_rad", g.u_angle_rad},
-          {"source", calib::Name(g.source)}};
-}
-
-core::PixelPoint ReadPoint(const Json& json) {
-  return {json.at(0), json.at(1)};
-}
-
-// `name` is what Name() gives for one of `values`. Throws std::invalid_argument
-// where it is another word: a fact of unknown source is none.
-template <class T, std::size_t N>
-T Named(const std::string& name, const T (&values)[N]) {
-  for (const T value : values) {
-    if (Name(value) == name) return value;
-  }
-  std::string known;
-  for (const T value : values) {
-    known += fmt::format("{}{}", known.empty() ? "" : ", ", Name(value));
-  }
-  throw std::invalid_argument(
-      fmt::format("'{}' is unknown, must be one of {}", name, known));
-}
-
-calib::GroundLine ReadGroundLine(const Json& json) {
-  using enum calib::GroundSource;
-  calib::GroundLine g;
-  g.p1 = ReadPoint(json.at("p1_px"));
-  g.p2 = ReadPoint(json.at("p2_px"));
-  g.reference = ReadPoint(json.at("reference_px"));
-  g.u_offset_px = json.at("u_offset_px");
-  g.u_angle_rad = json.at("u_angle_rad");
-  g.source = Named(json.at("source").get<std::string>(),
-                   {kUser, kCalibration, kDetected, kContactPoints});
-  return g;
-}
-
-// Writes the options that decide an answer, in SI. Limits, threads and progress
-// are left out: they belong to the run and not to the analysis.
-Json OptionsJson(const AnalyzeOptions& o) {
-  Json json = Json::object();
-  Put(json, "fps", o.fps);
-  Put(json, "gamma", o.gamma);
-  Put(json, "scale_px_per_m", o.scale_px_per_m);
-  if (o.body_kind) json["body_kind"] = core::Name(*o.body_kind);
-  Put(json, "diameter_m", o.diameter_m);
-  Put(json, "long_m", o.long_m);
-  Put(json, "short_m", o.short_m);
-  if (o.ground) json["ground"] = GroundJson(*o.ground);
-  if (o.contact_frame) json["contact_frame"] = *o.contact_frame;
-  json["frames"] = {o.first_frame, o.last_frame};
-  json["region"] = {o.region.x, o.region.y, o.region.width, o.region.height};
-  if (o.angle_kind) json["angle_kind"] = core::Name(*o.angle_kind);
-  Put(json, "bounce_height_m", o.bounce_height_m);
-  if (o.calibration) {
-    json["calibration"] = Json::parse(calib::CalibrationText(*o.calibration));
-  }
-  if (o.crop) json["crop"] = {o.crop->x_px, o.crop->y_px};
-  if (o.stop_early) json["stop_early"] = true;
-  return json;
-}
-
-// Reads them back. Throws Json::exception, std::invalid_argument or
-// core::InputError where the document is damaged or of another program.
-AnalyzeOptions ReadOptions(const Json& json) {
-  AnalyzeOptions o;
-  o.fps = Optional<double>(json, "fps");
-  o.gamma = Optional<double>(json, "gamma");
-  o.scale_px_per_m = OptionalEstimate(json, "scale_px_per_m");
-  if (json.contains("body_kind")) {
-    o.body_kind = core::ParseBodyKind(json["body_kind"].get<std::string>());
-  }
-  o.diameter_m = OptionalEstimate(json, "diameter_m");
-  o.long_m = OptionalEstimate(json, "long_m");
-  o.short_m = OptionalEstimate(json, "short_m");
-  if (json.contains("ground")) o.ground = ReadGroundLine(json["ground"]);
-  if (json.contains("contact_frame")) {
-    o.contact_frame = WholeNumber(json["contact_frame"], "contact_frame");
-  }
-  o.first_frame = WholeNumber(json.at("frames").at(0), "frames");
-  o.last_frame = WholeNumber(json.at("frames").at(1), "frames");
-  const Json& r = json.at("region");
-  o.region = {Int32(r.at(0), "region"), Int32(r.at(1), "region"),
-              Int32(r.at(2), "region"), Int32(r.at(3), "region")};
-  if (json.contains("angle_kind")) {
-    o.angle_kind = core::ParseAngleKind(json["angle_kind"].get<std::string>());
-  }
-  o.bounce_height_m = Optional<double>(json, "bounce_height_m");
-  if (json.contains("calibration")) {
-    o.calibration = calib::ParseCalibration(json["calibration"].dump(),
-                                            "the calibration of the analysis");
-  }
-  if (json.contains("crop")) {
-    o.crop = calib::SensorCorner{Int32(json["crop"].at(0), "crop"),
-                                 Int32(json["crop"].at(1), "crop")};
-  }
-  o.stop_early = Optional<bool>(json, "stop_early").value_or(false);
-  return o;
 }
 
 // --- track -------------------------------------------------------------------
@@ -267,16 +146,16 @@ vision::ClipInfo ReadClipInfo(const Json& json) {
   vision::ClipInfo clip;
   clip.path = json.at("path").get<std::string>();
   clip.format = json.at("format");
-  clip.width_px = Int32(json.at("width_px"), "width_px");
-  clip.height_px = Int32(json.at("height_px"), "height_px");
-  clip.bit_depth = Int32(json.at("bit_depth"), "bit_depth");
+  clip.width_px = WholeNumber<std::int32_t>(json.at("width_px"), "width_px");
+  clip.height_px = WholeNumber<std::int32_t>(json.at("height_px"), "height_px");
+  clip.bit_depth = WholeNumber<std::int32_t>(json.at("bit_depth"), "bit_depth");
   clip.frames = WholeNumber(json.at("frames"), "frames");
   clip.first_camera_frame =
       WholeNumber(json.at("first_camera_frame"), "first_camera_frame");
   const Json& time = json.at("time_base");
   clip.time_base.fps = time.at("fps");
   clip.time_base.source =
-      Named(time.at("source").get<std::string>(), {kContainer, kHeader, kUser});
+      ReadNamed(time.at("source"), {kContainer, kHeader, kUser});
   clip.time_base.uniform = time.at("uniform");
   clip.time_base.trusted = time.at("trusted");
   return clip;
@@ -303,8 +182,10 @@ core::Expected<vision::ExplainedChange> ReadExplained(const Json& document) {
   explained.elsewhere = json.at("elsewhere");
   explained.band_chi2 = json.at("band_chi2");
   explained.noise_dn = json.at("noise_dn");
-  explained.frames = Int32(json.at("frames"), "explained.frames");
-  explained.lost = Int32(json.at("lost_frames"), "explained.lost_frames");
+  explained.frames =
+      WholeNumber<std::int32_t>(json.at("frames"), "explained.frames");
+  explained.lost = WholeNumber<std::int32_t>(json.at("lost_frames"),
+                                             "explained.lost_frames");
   explained.pixels = WholeNumber(json.at("pixels"), "explained.pixels");
   return explained;
 }
@@ -318,21 +199,21 @@ Analysis RestoreAnalysis(const core::Trial& trial, const Json& document) {
   const Json& replay = document.at("replay");
   Analysis a;
   a.clip = ReadClipInfo(document.at("clip"));
-  a.channel = Named(document["clip"].at("channel").get<std::string>(),
-                    {kLuma, kBlueDifference, kRedDifference});
+  a.channel = ReadNamed(document["clip"].at("channel"),
+                        {kLuma, kBlueDifference, kRedDifference});
   a.clip_id = trial.clip.id;
   a.simulated = trial.origin == core::Origin::kSimulated;
   a.options = ReadOptions(replay.at("options"));
   if (replay.contains("sensor_origin")) {
     const Json& corner = replay["sensor_origin"];
-    a.clip.sensor_origin =
-        vision::SensorOrigin{Int32(corner.at(0), "sensor_origin"),
-                             Int32(corner.at(1), "sensor_origin")};
+    a.clip.sensor_origin = vision::SensorOrigin{
+        WholeNumber<std::int32_t>(corner.at(0), "sensor_origin"),
+        WholeNumber<std::int32_t>(corner.at(1), "sensor_origin")};
   }
   if (const Json& scale = document.at("scale"); !scale.is_null()) {
-    a.scale = calib::Scale{ReadEstimate(scale.at("px_per_m")),
-                           Named(scale.at("source").get<std::string>(),
-                                 {kUser, kCalibration, kBodySize})};
+    a.scale = calib::Scale{
+        ReadEstimate(scale.at("px_per_m")),
+        ReadNamed(scale.at("source"), {kUser, kCalibration, kBodySize})};
   } else {
     a.scale = core::AbsentBecause(document.at("absent").at("scale"));
   }
@@ -375,7 +256,7 @@ Json ReplayJson(const Analysis& analysis) {
   if (const auto& corner = analysis.clip.sensor_origin) {
     json["sensor_origin"] = {corner->x_px, corner->y_px};
   }
-  if (analysis.ground) json["ground"] = GroundJson(*analysis.ground);
+  if (analysis.ground) json["ground"] = GroundLineJson(*analysis.ground);
   if (analysis.track) json["track"] = TrackJson(*analysis.track);
   return json;
 }
@@ -441,16 +322,7 @@ std::optional<AnalyzeOptions> ReadCameraOptions(const core::Trial& trial) {
     return std::nullopt;
   }
   try {
-    // Each option is chosen by name: one that is added to AnalyzeOptions must
-    // not slip into the next clip's analysis.
-    const AnalyzeOptions all = ReadOptions(document["replay"].at("options"));
-    AnalyzeOptions camera;
-    camera.fps = all.fps;
-    camera.gamma = all.gamma;
-    camera.scale_px_per_m = all.scale_px_per_m;
-    camera.calibration = all.calibration;
-    camera.crop = all.crop;
-    return camera;
+    return ReadOptions(document["replay"].at("options"), OptionScope::kCamera);
   } catch (const Json::exception&) {
     return std::nullopt;
   } catch (const std::invalid_argument&) {

@@ -4,21 +4,22 @@
 
 #include <cmath>
 #include <stdexcept>
+#include <type_traits>
+
+#include "app/measure/option_fields.h"
 
 namespace touchdown::pipeline {
 namespace {
 
-// An option that is not given is in order. `!(v > 0)` refuses NaN as well.
-void RequirePositive(const char* field, const std::optional<double>& value) {
-  if (value && !(*value > 0.0 && std::isfinite(*value))) {
+// `!(v > 0)` refuses NaN as well.
+void RequirePositive(const char* name, double value) {
+  if (!(value > 0.0 && std::isfinite(value))) {
     throw std::invalid_argument(
-        fmt::format("{} is {}, must be positive and finite", field, *value));
+        fmt::format("{} is {}, must be positive and finite", name, value));
   }
 }
-
-void RequirePositive(const char* field,
-                     const std::optional<core::Estimate>& value) {
-  if (value) RequirePositive(field, std::optional<double>(value->value));
+void RequirePositive(const char* name, const core::Estimate& value) {
+  RequirePositive(name, value.value);
 }
 
 }  // namespace
@@ -45,14 +46,15 @@ std::optional<core::BodyKind> DetermineKind(const AnalyzeOptions& options) {
 }
 
 void CheckOptions(const AnalyzeOptions& options, const vision::ClipInfo& clip) {
-  RequirePositive("fps", options.fps);
-  RequirePositive("gamma", options.gamma);
-  RequirePositive("limit_s", options.limit_s);
-  RequirePositive("bounce height", options.bounce_height_m);
-  RequirePositive("scale_px_per_m", options.scale_px_per_m);
-  RequirePositive("diameter", options.diameter_m);
-  RequirePositive("first side", options.long_m);
-  RequirePositive("second side", options.short_m);
+  if (options.limit_s) RequirePositive("limit_s", *options.limit_s);
+  // Rates, scales and sizes: all numbers that may be stated.
+  VisitOptions(options, []<class T>(const char* name, const T& value,
+                                    OptionScope /*scope*/) {
+    if constexpr (std::is_same_v<T, std::optional<double>> ||
+                  std::is_same_v<T, std::optional<core::Estimate>>) {
+      if (value) RequirePositive(name, *value);
+    }
+  });
   DetermineKind(options);
   const std::int64_t frames = clip.frames;
   const std::int64_t last =

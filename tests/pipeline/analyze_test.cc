@@ -181,7 +181,7 @@ TEST(AnalyzeOptionsRefused, ByName) {
               }),
               HasSubstr("rectangle"));
   EXPECT_THAT(refusal([](auto& o) { o.bounce_height_m = 0.0; }),
-              HasSubstr("bounce height"));
+              HasSubstr("bounce_height_m"));
   EXPECT_THAT(refusal([](auto& o) { o.first_frame = 20; }),
               HasSubstr("frames"));
   EXPECT_THAT(refusal([](auto& o) { o.last_frame = 21; }), HasSubstr("0:20"));
