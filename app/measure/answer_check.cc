@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
 
 #include "app/measure/analyze.h"
 #include "touchdown/core/units.h"
@@ -57,11 +60,92 @@ AnswerCheck CheckExplained(const Analysis& analysis,
   return check;
 }
 
+struct Step {
+  double x_px = 0.0;
+  double y_px = 0.0;
+};
+
+Step MeasureStep(const vision::Pose& from, const vision::Pose& to) {
+  return {to.centre.x_px - from.centre.x_px, to.centre.y_px - from.centre.y_px};
+}
+
+double Distance(const Step& a, const Step& b) {
+  return std::hypot(a.x_px - b.x_px, a.y_px - b.y_px);
+}
+
+// How far a step lies beside those between the one before and the one after it:
+// the frame in which a blow falls has some of both.
+double BesideBoth(const Step& before, const Step& step, const Step& after) {
+  const Step change{after.x_px - before.x_px, after.y_px - before.y_px};
+  const double square = change.x_px * change.x_px + change.y_px * change.y_px;
+  const double along = (step.x_px - before.x_px) * change.x_px +
+                       (step.y_px - before.y_px) * change.y_px;
+  const double share =
+      square > 0.0 ? std::clamp(along / square, 0.0, 1.0) : 0.0;
+  return Distance(step, {before.x_px + share * change.x_px,
+                         before.y_px + share * change.y_px});
+}
+
+// The first pose before `last` from which the path jumps to the next frame's by
+// more than `most_px`; nothing where it does not.
+std::optional<std::size_t> FindJump(const std::vector<vision::Pose>& poses,
+                                    std::int64_t last, double most_px) {
+  // What a flight's acceleration changes from one step to the next.
+  std::vector<double> changes;
+  for (std::size_t i = 2; i < poses.size(); ++i) {
+    if (poses[i].frame - poses[i - 2].frame != 2) continue;
+    changes.push_back(Distance(MeasureStep(poses[i - 2], poses[i - 1]),
+                               MeasureStep(poses[i - 1], poses[i])));
+  }
+  if (changes.empty()) return std::nullopt;
+  const auto middle =
+      changes.begin() + static_cast<std::ptrdiff_t>(changes.size() / 2);
+  std::nth_element(changes.begin(), middle, changes.end());
+  constexpr double kChanges = 2.0;  // on both sides of the step
+  const double allowed_px = most_px + kChanges * *middle;
+  for (std::size_t i = 3; i < poses.size(); ++i) {
+    if (poses[i - 1].frame > last) break;
+    if (poses[i].frame - poses[i - 3].frame != 3) continue;
+    if (BesideBoth(MeasureStep(poses[i - 3], poses[i - 2]),
+                   MeasureStep(poses[i - 2], poses[i - 1]),
+                   MeasureStep(poses[i - 1], poses[i])) > allowed_px) {
+      return i - 2;
+    }
+  }
+  return std::nullopt;
+}
+
+// Up to the second contact: what the first one's angles and state hang on.
+std::optional<std::size_t> FindJump(const Analysis& analysis,
+                                    const AnswerCheckLimits& limits) {
+  if (!analysis.track) return std::nullopt;
+  const vision::Track& track = *analysis.track;
+  std::int64_t last = track.last_frame;
+  if (!analysis.contacts.later.empty()) {
+    const core::Measured& frame = analysis.contacts.later.front().contact.frame;
+    if (frame) last = std::llround(frame->value);
+  }
+  return FindJump(track.poses, last,
+                  2.0 * limits.most_jump * HalfShort(track.body).value);
+}
+
 // The flights that measure the first contact, against their own poses.
 AnswerCheck CheckPath(const Analysis& analysis,
                       const AnswerCheckLimits& limits) {
   AnswerCheck check;
   check.name = "path";
+  if (const auto at = FindJump(analysis, limits)) {
+    const vision::Pose& from = analysis.track->poses[*at];
+    const vision::Pose& to = analysis.track->poses[*at + 1];
+    const Step step = MeasureStep(from, to);
+    check.verdict =
+        analysis.corrections.empty() ? Verdict::kRefused : Verdict::kDoubtful;
+    check.reason = fmt::format(
+        "the path jumps by {:.0f} px from frame {} to {}, as no body does: it "
+        "was lost; give --frames, --region X,Y,W,H or the body's size",
+        std::hypot(step.x_px, step.y_px), from.frame, to.frame);
+    return check;
+  }
   const vision::ContactResult& contacts = analysis.contacts;
   if (contacts.evidence.empty()) {
     check.reason = "no flight was measured";

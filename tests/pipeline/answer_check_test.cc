@@ -95,6 +95,37 @@ TEST(AnswerCheck, OnlyADiscMayHaveHoles) {
   }
 }
 
+// A blow changes a velocity, never a place. Behind the second contact the
+// answer does not hang on the path.
+TEST(AnswerCheck, APathThatJumpsIsRefused) {
+  const Analysis answer = Answer();
+  ASSERT_TRUE(answer.contacts.first.contact.found);
+  const auto with_jump = [&](double px, std::size_t from) {
+    Analysis analysis = answer;
+    std::vector<vision::Pose>& poses = analysis.track->poses;
+    for (std::size_t i = from; i < poses.size(); ++i) {
+      poses[i].centre.x_px += px;
+    }
+    CheckAnswer(analysis);
+    return analysis;
+  };
+  const double size_px = 2.0 * answer.track->body.radius_px.value;
+  const std::size_t middle = answer.track->poses.size() / 2;
+  EXPECT_TRUE(with_jump(0.1 * size_px, middle).contacts.first.contact.found);
+  const Analysis lost = with_jump(0.5 * size_px, middle);
+  EXPECT_FALSE(lost.contacts.first.contact.found);
+  EXPECT_THAT(lost.contacts.first.contact.reason, HasSubstr("jumps by"));
+  Analysis later = answer;
+  later.contacts.later.emplace_back();
+  later.contacts.later.front().contact.frame = core::Estimate{
+      static_cast<double>(answer.track->poses[middle].frame), 0.1};
+  for (std::size_t i = middle + 5; i < later.track->poses.size(); ++i) {
+    later.track->poses[i].centre.x_px += size_px;
+  }
+  CheckAnswer(later);
+  EXPECT_TRUE(later.contacts.first.contact.found);
+}
+
 TEST(AnswerCheck, DoubtIsAWarning) {
   const Analysis analysis = WithNear(0.8);
   EXPECT_TRUE(analysis.contacts.first.contact.found);
