@@ -282,15 +282,16 @@ LightFit FitLevelsOrLight(Clip& clip, const Background& background,
                           });
   const double share =
       LogGammaUncertainty(trials) / (high->log_gamma - low->log_gamma);
-  const auto moved = [&, share](double SidesInLight::*value) {
-    return (high->sides.*value - low->sides.*value) * share;
+  const SidesInLight& most = high->sides;
+  const SidesInLight& least = low->sides;
+  const auto moved = [&](double SidesInLight::*value) {
+    return (most.*value - least.*value) * share;
   };
   best.u.half_long_px = moved(&SidesInLight::half_long_px);
   best.u.half_short_px = moved(&SidesInLight::half_short_px);
-  const LayerPose& a = high->sides.pose;
-  const LayerPose& b = low->sides.pose;
-  best.u.pose = {(a.x - b.x) * share, (a.y - b.y) * share,
-                 (a.angle_rad - b.angle_rad) * share};
+  best.u.pose = {(most.pose.x - least.pose.x) * share,
+                 (most.pose.y - least.pose.y) * share,
+                 (most.pose.angle_rad - least.pose.angle_rad) * share};
   return best;
 }
 
