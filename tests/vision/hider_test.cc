@@ -94,12 +94,6 @@ TEST(Hider, IsFoundWhereThePostIsAndNowhereElse) {
     EXPECT_TRUE(hider->Hides(kPost_px - 4.0, y)) << y;
     EXPECT_FALSE(hider->Hides(kPost_px + kReach_px, y)) << y;
   }
-  Outline outline;
-  outline.radius_px = kRadius_px;
-  outline.centre = {kPost_px + kReach_px + kRadius_px + 1.0, 44.0};
-  EXPECT_FALSE(hider->Touches(outline));
-  outline.centre.x_px -= kReach_px;
-  EXPECT_TRUE(hider->Touches(outline));
   EXPECT_FALSE(hider->Hides(-5.0, 40.0));
   EXPECT_FALSE(hider->Hides(1e4, 1e4));
 }

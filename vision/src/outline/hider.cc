@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <numbers>
 #include <utility>
 
 #include "numbers/symmetric_factor.h"
@@ -186,19 +185,6 @@ bool Hider::Hides(double x_px, double y_px) const {
   const auto y = static_cast<std::int64_t>(std::lround(y_px)) - box.y;
   return x >= 0 && y >= 0 && x < box.width && y < box.height &&
          hides[static_cast<std::size_t>(y * box.width + x)] != 0;
-}
-
-bool Hider::Touches(const Outline& outline) const {
-  // Points around the outline, one each 5 deg for a disc.
-  constexpr int kProbes = 72;
-  const double cosine = std::cos(outline.angle_rad);
-  const double sine = std::sin(outline.angle_rad);
-  for (int i = 0; i < kProbes; ++i) {
-    const core::PixelPoint p = OutlinePoint(
-        outline, cosine, sine, 2.0 * std::numbers::pi * i / kProbes);
-    if (Hides(p.x_px, p.y_px)) return true;
-  }
-  return false;
 }
 
 std::shared_ptr<const Hider> FindHider(Clip& clip, const Background& background,

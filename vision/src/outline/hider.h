@@ -25,7 +25,6 @@ struct Hider {
   std::vector<std::uint8_t> hides;  // of its pixels, row by row; not 0: hidden
 
   bool Hides(double x_px, double y_px) const;
-  bool Touches(const Outline& outline) const;
 };
 
 struct HiderOptions {

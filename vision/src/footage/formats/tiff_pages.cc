@@ -292,8 +292,6 @@ std::uint64_t FirstDirectory(const Bytes& file) {
 
 }  // namespace
 
-bool IsTiff(FileBytes file) { return Bytes(file).is_tiff(); }
-
 // Follows the chain of directories; one that leads back ends the list.
 TiffPages ListTiffPages(FileBytes bytes, const std::string& name) {
   const Bytes file(bytes);

@@ -34,8 +34,6 @@ struct TiffPages {
   std::string ended_early;      // why there are no more pages, or empty
 };
 
-bool IsTiff(FileBytes file);
-
 // Throws core::InputError naming the file if it is no TIFF.
 TiffPages ListTiffPages(FileBytes file, const std::string& name);
 
