@@ -205,12 +205,10 @@ Track Refine(Clip& clip, const Background& background, const Track& given,
         {a.value * ratio.value,
          std::hypot(a.u * ratio.value, a.value * ratio.u), std::nullopt});
   }
-  if (!refine.size_is_stated && !clip.info().gamma_is_known) {
+  if (!refine.size_is_stated) {
+    TakeUnknownGamma(clip.info(), background, refined);
     // Sides whose ratio is stated move in that ratio.
-    BodyImage& body = refined.body;
-    body.gamma_long_px = UnknownShift(background, refined);
-    body.gamma_short_px =
-        body.gamma_long_px * (refine.aspect ? refine.aspect->value : 1.0);
+    if (refine.aspect) refined.body.gamma_short_px *= refine.aspect->value;
   }
   refiner.MeasurePoses(refined);
   Unwrap(refined);

@@ -17,6 +17,7 @@
 #include "tracking/follow_pattern.h"
 #include "tracking/layered_track.h"
 #include "tracking/seen_rectangle.h"
+#include "tracking/unknown_gamma.h"
 #include "tracking/whole_body.h"
 
 namespace touchdown::vision {
@@ -658,7 +659,11 @@ core::Expected<TrackResult> FollowBody(Clip& clip,
 
 core::Expected<TrackResult> TrackBody(Clip& clip, const TrackOptions& options) {
   core::Expected<TrackResult> result = FollowBody(clip, options);
-  if (result) result->track.is_predicted = clip.info().is_predicted;
+  if (!result) return result;
+  result->track.is_predicted = clip.info().is_predicted;
+  if (!options.size) {
+    TakeUnknownGamma(clip.info(), result->background, result->track);
+  }
   return result;
 }
 
@@ -672,6 +677,7 @@ Track FitEveryFrame(Clip& clip, const Background& background,
   const std::string cut =
       FitSkippedFrames(clip, background, options, track.step, false, whole);
   whole.body.whole_px = track.body.whole_px;
+  if (!options.size) TakeUnknownGamma(clip.info(), background, whole);
   if (!cut.empty()) whole.warnings.push_back(cut);
   whole.warnings.insert(whole.warnings.end(), track.warnings.begin(),
                         track.warnings.end());

@@ -88,4 +88,11 @@ double UnknownShift(const Background& background, const Track& track) {
   return weights > 0.0 ? std::abs(shift / weights) : 0.0;
 }
 
+void TakeUnknownGamma(const ClipInfo& clip, const Background& background,
+                      Track& track) {
+  if (clip.gamma_is_known || track.layered) return;
+  track.body.gamma_long_px = UnknownShift(background, track);
+  track.body.gamma_short_px = track.body.gamma_long_px;
+}
+
 }  // namespace touchdown::vision

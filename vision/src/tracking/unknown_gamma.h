@@ -14,6 +14,7 @@
 #pragma once
 
 #include "touchdown/vision/background/background.h"
+#include "touchdown/vision/footage/clip.h"
 #include "touchdown/vision/track/track.h"
 
 namespace touchdown::vision {
@@ -32,5 +33,10 @@ double EdgeShift(double first_dn, double second_dn, double blur_px,
 // root mean square of their shift, px. Where the contrast is strong, a fit has
 // its weight.
 double UnknownShift(const Background& background, const Track& track);
+
+// Sets BodyImage's gamma_long_px and gamma_short_px to it, where the sizes are
+// those of outlines and the clip's gamma is not known.
+void TakeUnknownGamma(const ClipInfo& clip, const Background& background,
+                      Track& track);
 
 }  // namespace touchdown::vision
