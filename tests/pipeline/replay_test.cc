@@ -326,6 +326,53 @@ TEST(Replay, KeepsEveryFieldOfTheTrack) {
   EXPECT_FALSE(Replay(ToTrial(shot.analysis)));
 }
 
+// All but what decides no answer: progress, threads, limits, digest, today.
+TEST(Replay, KeepsTheOptionsThatDecideTheAnswer) {
+  Shot shot(core::BodyKind::kRectangle);
+  AnalyzeOptions& told = shot.analysis.options;
+  told.fps = 2000.5;
+  told.gamma = 2.25;
+  told.scale_px_per_m = core::Estimate{1000.5, 0.5, std::nullopt};
+  told.diameter_m = core::Estimate{0.5, 0.25, std::nullopt};
+  told.ground = calib::MakeGroundLine({10.0, 97.5}, {230.0, 98.5}, 0.5);
+  told.contact_frame = 5;
+  told.first_frame = 2;
+  told.last_frame = 90;
+  told.region = {1, 2, 30, 40};
+  told.angle_kind = core::AngleKind::kFace;
+  told.bounce_height_m = 0.125;
+  told.stop_early = true;
+  told.crop = calib::SensorCorner{16, 32};
+  shot.analysis.ground = core::AbsentBecause("no line");
+  const auto again = Replay(ToTrial(shot.analysis));
+  ASSERT_TRUE(again) << again.error().reason;
+  const AnalyzeOptions& kept = again->options;
+  EXPECT_EQ(kept.fps, told.fps);
+  EXPECT_EQ(kept.gamma, told.gamma);
+  EXPECT_EQ(kept.scale_px_per_m, told.scale_px_per_m);
+  EXPECT_EQ(kept.body_kind, told.body_kind);
+  EXPECT_EQ(kept.diameter_m, told.diameter_m);
+  EXPECT_EQ(kept.long_m, told.long_m);
+  EXPECT_EQ(kept.short_m, told.short_m);
+  ASSERT_TRUE(kept.ground);
+  EXPECT_EQ(kept.ground->p1, told.ground->p1);
+  EXPECT_EQ(kept.ground->p2, told.ground->p2);
+  EXPECT_EQ(kept.ground->reference, told.ground->reference);
+  EXPECT_EQ(kept.ground->u_offset_px, told.ground->u_offset_px);
+  EXPECT_EQ(kept.ground->u_angle_rad, told.ground->u_angle_rad);
+  EXPECT_EQ(kept.ground->source, told.ground->source);
+  EXPECT_EQ(kept.contact_frame, told.contact_frame);
+  EXPECT_EQ(kept.first_frame, told.first_frame);
+  EXPECT_EQ(kept.last_frame, told.last_frame);
+  EXPECT_EQ(kept.region, told.region);
+  EXPECT_EQ(kept.angle_kind, told.angle_kind);
+  EXPECT_EQ(kept.bounce_height_m, told.bounce_height_m);
+  EXPECT_EQ(kept.stop_early, told.stop_early);
+  ASSERT_TRUE(kept.crop);
+  EXPECT_EQ(kept.crop->x_px, told.crop->x_px);
+  EXPECT_EQ(kept.crop->y_px, told.crop->y_px);
+}
+
 TEST(Replay, AnUnknownWordIsAnErrorAndNotTheFirstOfAList) {
   const Shot shot;
   for (const char* pointer : {"/replay/ground/source", "/clip/time_base/source",

@@ -409,7 +409,8 @@ bool HasPlainFace(Clip& clip, const Background& background, const Track& track,
   constexpr double kPlain = 1.05;
   return MedianMisfit(track.poses) <= kPlain ||
          MedianMisfit(Refine(clip, background, track,
-                             {std::nullopt, std::nullopt, true, threads})
+                             {.size_is_stated = true,  // none is asked of it
+                              .threads = threads})
                           .poses) <= kPlain;
 }
 
