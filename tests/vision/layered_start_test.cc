@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <numbers>
 #include <stdexcept>
+#include <vector>
 
 #include "tests/vision/drawn_block.h"
 
@@ -37,12 +38,10 @@ DrawnBlock Slow() {
 }
 
 // Within four pixels and eight degrees of the block in every frame.
-void ExpectFollowed(const DrawnBlock& block) {
-  const auto clip = DrawBlock(block);
-  const auto start = FindLayeredStart(*clip, OptionsFor(block));
-  ASSERT_TRUE(start) << start.error().reason;
-  ASSERT_EQ(start->size(), 40U);
-  for (const StartPose& pose : *start) {
+void ExpectFollowed(const DrawnBlock& block,
+                    const std::vector<StartPose>& poses) {
+  ASSERT_EQ(poses.size(), 40U);
+  for (const StartPose& pose : poses) {
     const synthetic::BlockPose truth = block.pose(pose.frame);
     EXPECT_TRUE(pose.seen) << pose.frame;
     EXPECT_NEAR(pose.centre.x_px, truth.x_px, 4.0) << pose.frame;
@@ -52,6 +51,13 @@ void ExpectFollowed(const DrawnBlock& block) {
         8.0 * std::numbers::pi / 180.0)
         << pose.frame;
   }
+}
+
+void ExpectFollowed(const DrawnBlock& block) {
+  const auto clip = DrawBlock(block);
+  const auto start = FindLayeredStart(*clip, OptionsFor(block));
+  ASSERT_TRUE(start) << start.error().reason;
+  ExpectFollowed(block, *start);
 }
 
 TEST(FindLayeredStart, FollowsABodyThatCoversItsOwnPlace) {
@@ -116,6 +122,44 @@ TEST(FindLayeredStart, TakesWhatACodecRepeatsForNoise) {
 TEST(FindLayeredStart, RefusesAShapeWithoutSize) {
   const auto clip = DrawBlock(Slow());
   EXPECT_THROW(FindLayeredStart(*clip, {}), std::invalid_argument);
+}
+
+LayeredStartOptions OptionsFor(core::BodyKind kind) {
+  LayeredStartOptions options;
+  options.shape.kind = kind;
+  options.threads = 1;
+  return options;
+}
+
+// Sides to three cells of 2 px; half of what is drawn on it looks like the
+// wall.
+TEST(FindSizedStart, FindsSidesThatNobodyStated) {
+  DrawnBlock block = Slow();
+  block.half_short_px = 14.0;
+  block.level_dn = 110.0;
+  block.face = [](double along, double across) {
+    return 60.0 * std::sin(0.4 * along) * std::cos(0.3 * across);
+  };
+  const auto clip = DrawBlock(block);
+  const auto start =
+      FindSizedStart(*clip, OptionsFor(core::BodyKind::kRectangle));
+  ASSERT_TRUE(start) << start.error().reason;
+  EXPECT_NEAR(start->shape.long_side, 2.0 * block.half_long_px, 6.0);
+  EXPECT_NEAR(start->shape.short_side, 2.0 * block.half_short_px, 6.0);
+  ExpectFollowed(block, start->poses);
+  const auto disc = FindSizedStart(*clip, OptionsFor(core::BodyKind::kSphere));
+  if (disc) EXPECT_GT(disc->unexplained, 1.1 * start->unexplained);
+}
+
+TEST(FindSizedStart, SaysThatNothingMoves) {
+  DrawnBlock block;
+  block.pose = [](std::int64_t) {
+    return synthetic::BlockPose{90.0, 60.0, 0.2};
+  };
+  EXPECT_FALSE(FindSizedStart(*DrawBlock(block),
+                              OptionsFor(core::BodyKind::kRectangle)));
+  EXPECT_FALSE(
+      FindSizedStart(*DrawBlock(block), OptionsFor(core::BodyKind::kSphere)));
 }
 
 }  // namespace

@@ -59,6 +59,31 @@ TEST(TrackBody, FollowsABodyOfKnownSizeThatCoversItsOwnPlace) {
   }
 }
 
+// Half of what is drawn on it looks like the wall, so that no outline shows the
+// body, and nobody stated its size.
+TEST(TrackBody, FindsABlockWhoseFaceLooksLikeTheWallInPart) {
+  DrawnBlock block = Slow();
+  block.half_short_px = 14.0;
+  block.level_dn = 110.0;
+  block.face = [](double along, double across) {
+    return 60.0 * std::sin(0.4 * along) * std::cos(0.3 * across);
+  };
+  TrackOptions options;
+  options.threads = 1;
+  const auto result = TrackBody(*DrawBlock(block), options);
+  ASSERT_TRUE(result) << result.error().reason;
+  const Track& track = result->track;
+  ASSERT_EQ(track.body.kind, core::BodyKind::kRectangle);
+  EXPECT_NEAR(track.body.half_long_px.value, block.half_long_px, 0.3);
+  EXPECT_NEAR(track.body.half_short_px.value, block.half_short_px, 0.3);
+  EXPECT_GE(track.poses.size(), 36U);
+  for (const Pose& pose : track.poses) {
+    const BlockPose truth = block.pose(pose.frame);
+    EXPECT_NEAR(pose.centre.x_px, truth.x_px, 0.3) << pose.frame;
+    EXPECT_NEAR(pose.centre.y_px, truth.y_px, 0.3) << pose.frame;
+  }
+}
+
 constexpr double kRadius_px = 16.0;
 constexpr std::int64_t kFrames = 40;
 

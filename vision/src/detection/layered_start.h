@@ -1,5 +1,5 @@
-// Where a body of known size is from the first frame to the last, found
-// together with the still picture behind it.
+// Where a body is from the first frame to the last, found together with the
+// still picture behind it; and its size, where nobody stated it.
 //
 // A mean or median over the frames shows the body itself where it covers a
 // pixel in half of them, and a search in what differs from that follows its
@@ -18,6 +18,10 @@
 // that leaves the least change unexplained is the answer: a body that goes less
 // than its own length is most of the median. s: noise of the reduced picture,
 // G: a Gaussian of 1 px of it, c: see the source.
+//
+// Where the size is not known, shape and path are found in turn, too
+// (shape_along_path.h), from some shapes of the area that changes. Of all
+// shapes and paths the answer leaves the least change unexplained.
 #pragma once
 
 #include <cstdint>
@@ -34,7 +38,8 @@ struct LayeredStartOptions {
   std::int64_t first = 0;
   std::int64_t last = -1;
 
-  KnownShape shape;  // px
+  // px. Of FindSizedStart the kind alone counts.
+  KnownShape shape;
 
   // About so many frames are looked at, evenly spread. Fewer cost less time and
   // show less of what is behind the body; between two of them it may move by
@@ -63,5 +68,16 @@ struct StartPose {
 // std::invalid_argument for a shape without size.
 core::Expected<std::vector<StartPose>> FindLayeredStart(
     Clip& clip, const LayeredStartOptions& options);
+
+struct SizedStart {
+  KnownShape shape;  // px, to some tenths of its sides
+  std::vector<StartPose> poses;
+  double unexplained = 0.0;  // MeasureUnexplained
+};
+
+// The same of a body of this kind whose size is not known. Throws what
+// Clip::Read throws.
+core::Expected<SizedStart> FindSizedStart(Clip& clip,
+                                          const LayeredStartOptions& options);
 
 }  // namespace touchdown::vision

@@ -1,5 +1,5 @@
-// The track from a layered start, or from another look's poses, where the
-// body's size is known, and whether one can be made and is worth its time.
+// The track from a layered start (detection/layered_start.h), and whether one
+// can be made and is worth its time.
 #pragma once
 
 #include <cstdint>
@@ -22,14 +22,15 @@ bool IsOfSize(const BodyImage& body, const BodySize& size);
 bool MayFollowGhost(const Clip& clip, const TrackOptions& options,
                     const Track& track, double most_covered);
 
-// Whether a layered start can be tried: as above, and in the whole picture
-// only (TrackOptions::region).
+// Whether a layered start can be tried: as above but for the size, and in the
+// whole picture only (TrackOptions::region).
 bool CanStartFromLayers(const Clip& clip, const TrackOptions& options);
 
 // Outlines from the poses of a layered start, before a background of what they
 // leave uncovered (Background::unknown where nothing is); `fallback` has the
 // levels there. Absent, with the reason, where there is no such start, or fewer
-// than three outlines of the stated size. `last`: frames up to it can be read.
+// than three outlines of the size: the stated one, else that of the start.
+// `last`: frames up to it can be read.
 core::Expected<TrackResult> TrackFromLayers(Clip& clip,
                                             const TrackOptions& options,
                                             std::int64_t last,

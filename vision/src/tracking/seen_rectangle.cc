@@ -33,6 +33,26 @@ class MeanDifference {
   int rows() const { return 2 * reach_y_ + 1; }
   double x_of(int column) const { return column - reach_x_; }
   double y_of(int row) const { return row - reach_y_; }
+  // At any place, between four of the grid. Absent where one of them is.
+  std::optional<double> Between(double x, double y) const {
+    const double u = x + reach_x_;
+    const double v = y + reach_y_;
+    const int column = static_cast<int>(std::floor(u));
+    const int row = static_cast<int>(std::floor(v));
+    if (column < 0 || row < 0 || column + 1 >= columns() || row + 1 >= rows()) {
+      return std::nullopt;
+    }
+    double sum = 0.0;
+    for (int j = 0; j <= 1; ++j) {
+      for (int i = 0; i <= 1; ++i) {
+        const auto d = At(column + i, row + j);
+        if (!d) return std::nullopt;
+        sum += *d * (1.0 - std::abs(u - (column + i))) *
+               (1.0 - std::abs(v - (row + j)));
+      }
+    }
+    return sum;
+  }
   // Absent where too few frames tell.
   std::optional<double> At(int column, int row) const {
     constexpr int kLeastFrames = 3;  // one or two may be an outlier's
@@ -120,6 +140,101 @@ std::vector<cv::Point2f> ListSeen(const MeanDifference& difference,
   return seen;
 }
 
+// A rectangle in the body's coordinates.
+struct Rectangle {
+  double x = 0.0;
+  double y = 0.0;
+  double turn_rad = 0.0;
+  double half_long = 0.0;
+  double half_short = 0.0;
+};
+
+// A side of it: the way out, and what it is away and long, both halved.
+struct Side {
+  double out_x = 0.0;
+  double out_y = 0.0;
+  double reach = 0.0;
+  double half = 0.0;
+};
+
+// Root mean square of D on a line beside a side, `outside` px beyond it. Absent
+// where most of it is not known.
+std::optional<double> MeasureBeside(const MeanDifference& difference,
+                                    const Rectangle& at, const Side& side,
+                                    double outside) {
+  constexpr double kLength = 0.8;  // of the side: corners have two of them
+  const double cosine = std::cos(at.turn_rad);
+  const double sine = std::sin(at.turn_rad);
+  const int reach = static_cast<int>(kLength * side.half);
+  double sum = 0.0;
+  int known = 0;
+  for (int k = -reach; k <= reach; ++k) {
+    const double u = side.out_x * (side.reach + outside) - side.out_y * k;
+    const double v = side.out_y * (side.reach + outside) + side.out_x * k;
+    const auto d = difference.Between(at.x + cosine * u - sine * v,
+                                      at.y + sine * u + cosine * v);
+    if (!d) continue;
+    sum += *d * *d;
+    ++known;
+  }
+  if (known <= reach) return std::nullopt;
+  return std::sqrt(sum / known);
+}
+
+// Where a side's difference has fallen to half of what it is within the body:
+// px beyond the side. A blurred edge is there, whatever the blur and the sign
+// of the contrast along it. 0 where it does not fall.
+double FindEdge(const MeanDifference& difference, const Rectangle& at,
+                const Side& side) {
+  // px: what is within is looked for from kFrom to kWithin, clear of the blur.
+  constexpr int kFrom = -5;
+  constexpr int kWithin = -3;
+  constexpr int kTo = 4;
+  constexpr int kSteps = 4;  // a px
+  std::vector<std::optional<double>> beside;
+  double within = 0.0;
+  for (int k = kFrom * kSteps; k <= kTo * kSteps; ++k) {
+    const double outside = static_cast<double>(k) / kSteps;
+    beside.push_back(MeasureBeside(difference, at, side, outside));
+    if (k <= kWithin * kSteps) {
+      within +=
+          beside.back().value_or(0.0) / ((kWithin - kFrom) * kSteps + 1.0);
+    }
+  }
+  for (std::size_t i = beside.size() - 1; i > 0; --i) {
+    if (!beside[i] || !beside[i - 1]) continue;
+    const double over = *beside[i - 1] - 0.5 * within;
+    const double under = *beside[i] - 0.5 * within;
+    if (over <= 0.0 || under > 0.0) continue;
+    return kFrom +
+           (static_cast<double>(i) - 1.0 + over / (over - under)) / kSteps;
+  }
+  return 0.0;
+}
+
+// The rectangle with each side where its edge is.
+Rectangle MoveToEdges(const MeanDifference& difference, const Rectangle& at) {
+  const auto edge = [&](double out_x, double out_y) {
+    return std::abs(out_x) > 0.0
+               ? FindEdge(difference, at,
+                          {out_x, out_y, at.half_long, at.half_short})
+               : FindEdge(difference, at,
+                          {out_x, out_y, at.half_short, at.half_long});
+  };
+  const double ahead = edge(1.0, 0.0);
+  const double back = edge(-1.0, 0.0);
+  const double down = edge(0.0, 1.0);
+  const double up = edge(0.0, -1.0);
+  Rectangle out = at;
+  out.half_long += 0.5 * (ahead + back);
+  out.half_short += 0.5 * (down + up);
+  const double along = 0.5 * (ahead - back);
+  const double across = 0.5 * (down - up);
+  out.x += std::cos(at.turn_rad) * along - std::sin(at.turn_rad) * across;
+  out.y += std::sin(at.turn_rad) * along + std::cos(at.turn_rad) * across;
+  return out;
+}
+
 }  // namespace
 
 std::optional<SeenRectangle> TakeSeenRectangle(Clip& clip,
@@ -157,9 +272,14 @@ std::optional<SeenRectangle> TakeSeenRectangle(Clip& clip,
   }
   // To the nearest of the attitudes that look alike.
   turn = std::remainder(turn, std::numbers::pi);
+  const Rectangle at =
+      MoveToEdges(difference, {static_cast<double>(least.center.x),
+                               static_cast<double>(least.center.y), turn,
+                               0.5 * static_cast<double>(sides.width),
+                               0.5 * static_cast<double>(sides.height)});
   SeenRectangle out{track};
-  out.track.body.half_long_px.value = 0.5 * static_cast<double>(sides.width);
-  out.track.body.half_short_px.value = 0.5 * static_cast<double>(sides.height);
+  out.track.body.half_long_px.value = at.half_long;
+  out.track.body.half_short_px.value = at.half_short;
   // px: neighbours are asked for, and a start is no better.
   constexpr float kEnd_px = 2.0F;
   const auto end_x =
@@ -170,13 +290,11 @@ std::optional<SeenRectangle> TakeSeenRectangle(Clip& clip,
       std::any_of(seen.begin(), seen.end(), [&](const cv::Point2f& place) {
         return std::abs(place.x) > end_x || std::abs(place.y) > end_y;
       });
-  const auto x = static_cast<double>(least.center.x);
-  const auto y = static_cast<double>(least.center.y);
   for (Pose& pose : out.track.poses) {
     const double cosine = std::cos(pose.angle_rad);
     const double sine = std::sin(pose.angle_rad);
-    pose.centre.x_px += cosine * x - sine * y;
-    pose.centre.y_px += sine * x + cosine * y;
+    pose.centre.x_px += cosine * at.x - sine * at.y;
+    pose.centre.y_px += sine * at.x + cosine * at.y;
     pose.angle_rad += turn;
   }
   return out;

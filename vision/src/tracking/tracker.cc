@@ -303,7 +303,7 @@ core::Expected<TrackResult> InLayers(Clip& clip, const TrackOptions& options,
   return result;
 }
 
-// The stated body from a layered start (layered_start.h), in layers.
+// The body from a layered start (layered_start.h), in layers.
 core::Expected<TrackResult> StartInLayers(Clip& clip,
                                           const TrackOptions& options,
                                           std::int64_t last,
@@ -322,13 +322,16 @@ core::Expected<TrackResult> LookAlongPoses(Clip& clip,
   // Of the sides, beyond the outline: what it may have left out. More looks at
   // what stands beside the body. Not studied.
   constexpr double kMargin = 0.2;
-  constexpr int kMostRounds = 4;  // twice the sides
+  constexpr double kLeastMargin_px = 6.0;  // clear of the blur
+  constexpr int kMostRounds = 4;           // twice the sides
   TrackResult out;
   out.track = track;
   for (int round = 0; round < kMostRounds; ++round) {
     Track wide = out.track;
-    wide.body.half_long_px.value *= 1.0 + kMargin;
-    wide.body.half_short_px.value *= 1.0 + kMargin;
+    for (double* half :
+         {&wide.body.half_long_px.value, &wide.body.half_short_px.value}) {
+      *half += std::max(kMargin * *half, kLeastMargin_px);
+    }
     out.background = EstimateMaskedBackground(
         clip, FindTrackCovers(clip, options, wide), fallback,
         ChooseBackgroundOptions(clip, options));
@@ -362,15 +365,15 @@ struct Explained {
   double share = 0.0;
 };
 
-// A block's outline that was led astray explains less than usual. The rectangle
-// that is seen is followed, and once more with better poses.
+// A block's outline that was led astray explains less than usual. While less
+// than `enough` is explained, the rectangle that is seen is followed, and once
+// more with better poses.
 Explained ImproveOutline(Clip& clip, const TrackOptions& options,
                          const TrackResult& outlines, TrackResult layered,
-                         double share) {
+                         double share, double enough) {
   constexpr int kMostRounds = 3;  // two were enough in the clips looked at
   Explained best{std::move(layered), share};
-  for (int round = 0; round < kMostRounds && best.share < kUsuallyExplained;
-       ++round) {
+  for (int round = 0; round < kMostRounds && best.share < enough; ++round) {
     auto again = InSeenRectangle(clip, options, best.result, outlines);
     if (!again) break;
     const double then = ShareExplained(clip, options, again->track);
@@ -411,7 +414,8 @@ bool TakeLayers(Clip& clip, const TrackOptions& options, double most_covered,
       best->track.body.kind == core::BodyKind::kRectangle) {
     double share = ShareExplained(clip, options, best->track);
     if (share < kUsuallyExplained) {
-      auto better = ImproveOutline(clip, options, result, *best, share);
+      auto better = ImproveOutline(clip, options, result, *best, share,
+                                   kUsuallyExplained);
       if (better.share > kLeastOfSeen) {
         best = std::move(better.result);
         share = better.share;
@@ -430,6 +434,32 @@ bool TakeLayers(Clip& clip, const TrackOptions& options, double most_covered,
     return false;
   }
   result = std::move(*best);
+  return true;
+}
+
+// Replaces a result that explains too little of the clip, of a body whose size
+// nobody stated, by a layered start.
+bool TakeLayeredStart(Clip& clip, const TrackOptions& options,
+                      std::int64_t last, TrackResult& result) {
+  if (options.size || !CanStartFromLayers(clip, options) ||
+      ShareExplained(clip, options, result.track) >= kLeastExplained) {
+    return false;
+  }
+  const Background all = EstimateBackground(
+      clip, options.first, last, ChooseBackgroundOptions(clip, options));
+  auto outlines = TrackFromLayers(clip, options, last, all);
+  if (!outlines) return false;
+  auto layered = InLayers(clip, options, *outlines);
+  if (!layered) return false;
+  const double share = ShareExplained(clip, options, layered->track);
+  Explained best{std::move(*layered), share};
+  if (outlines->track.body.kind == core::BodyKind::kRectangle) {
+    // The start's sides are known to a cell.
+    best = ImproveOutline(clip, options, *outlines, std::move(best.result),
+                          best.share, 1.0);
+  }
+  if (best.share < kLeastOfSeen) return false;
+  result = std::move(best.result);
   return true;
 }
 
@@ -489,7 +519,8 @@ void ChooseBehind(Clip& clip, const TrackOptions& options, double most_covered,
 // badly, a layered start, as before; the other hypotheses, the background
 // without the body, the same hypothesis before that background where the body
 // was lost, the kind of body once more, outlines of all frames, and at last
-// layers or a template where outlines do not explain the body.
+// layers, a layered start without a size, or a template where outlines do not
+// explain the body.
 core::Expected<TrackResult> FollowBody(Clip& clip,
                                        const TrackOptions& options) {
   std::int64_t last = options.last < 0
@@ -527,7 +558,8 @@ core::Expected<TrackResult> FollowBody(Clip& clip,
   };
   // A clip that is decoded whole is looked at in layers at once: in 13 clips in
   // H.264 (crf 23) a plain look cost as much as the start, 4.1 ms a frame.
-  const bool starts_in_layers = CanStartFromLayers(clip, options);
+  const bool starts_in_layers =
+      options.size && options.kind && CanStartFromLayers(clip, options);
   if (starts_in_layers && !clip.windows_are_cheap()) {
     look([&] {
       layered = StartInLayers(clip, options, last, from_all_frames());
@@ -555,6 +587,10 @@ core::Expected<TrackResult> FollowBody(Clip& clip,
     first = FirstLook(clip, options, std::move(plain));
   });
   if (!first) {
+    if (TakeLayeredStart(clip, options, last, result)) {
+      if (!warning.empty()) result.track.warnings.push_back(warning);
+      return result;
+    }
     // One that was tried already does not explain the clip.
     if (layered || !starts_in_layers) return tl::unexpected(first.error());
     layered = StartInLayers(clip, options, last, from_all_frames());
@@ -635,6 +671,9 @@ core::Expected<TrackResult> FollowBody(Clip& clip,
                 !HasPlainFace(clip, result.background, track, options.threads);
   if (needs_layers &&
       TakeLayers(clip, options, covers.most, std::move(layered), result)) {
+    whole_px = 0.0;
+  } else if (NeedsLayers(track, covers.most) &&
+             TakeLayeredStart(clip, options, last, result)) {
     whole_px = 0.0;
   } else {
     FollowWhole(clip, options, *first, result, whole_px);
