@@ -355,6 +355,16 @@ TEST(FitLayers, ABlockThatLiesOnTheGroundsEdge) {
   EXPECT_LT(errors.z2, 3.0);
 }
 
+// Not only where it returns: a large body's fit takes minutes.
+TEST(FitLayers, EndsWhereItIsCancelled) {
+  const LayeredScene scene = BlockOnGround();
+  FitLayersOptions options = OptionsOf(scene);
+  options.until = core::Cancellation::After(1e-9);
+  EXPECT_THROW(FitLayers(Film(scene, 11), scene.shape, scene.poses,
+                         Paint(scene, nullptr), scene.noise_dn, options),
+               core::Cancelled);
+}
+
 TEST(FitLayers, AShadedBodyIsNotDrawnToOneSide) {
   LayeredScene scene;
   scene.shape = Shape{true, 10.0, 10.0};

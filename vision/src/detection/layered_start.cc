@@ -169,6 +169,17 @@ std::vector<KnownShape> GuessShapes(core::BodyKind kind,
   return shapes;
 }
 
+// px of a cell's side where the body's size is not known: of a picture of
+// 640 x 400 the least, by which bodies of 16 px have the cells that a search
+// needs; of larger ones so that they take no more time.
+std::int32_t ReductionOfAny(const ClipInfo& info) {
+  constexpr double kCells = 64e3;
+  constexpr double kLeast = 2.0;
+  const double pixels = static_cast<double>(info.width_px) * info.height_px;
+  return static_cast<std::int32_t>(
+      std::max(kLeast, std::ceil(std::sqrt(pixels / kCells))));
+}
+
 // E begins about a cell beyond the outline, which G and a clear contrast blur.
 KnownShape WithoutBlur(KnownShape shape) {
   constexpr double kBoth = 2.0;  // cells, at two ends
@@ -222,10 +233,8 @@ core::Expected<std::vector<StartPose>> FindLayeredStart(
 
 core::Expected<SizedStart> FindSizedStart(Clip& clip,
                                           const LayeredStartOptions& options) {
-  // px of a cell's side: bodies of 16 px and more have the cells that a search
-  // needs. Larger saves time. Not studied.
-  constexpr std::int32_t kReduction = 2;
-  const auto taken = SampleFrames(clip, options, kReduction);
+  const std::int32_t reduction = ReductionOfAny(clip.info());
+  const auto taken = SampleFrames(clip, options, reduction);
   if (!taken) return tl::unexpected(taken.error());
   const ReducedFrames& sampled = *taken;
   const StillLayer median = MedianStill(sampled, options.threads);
@@ -249,8 +258,8 @@ core::Expected<SizedStart> FindSizedStart(Clip& clip,
       const double unexplained = MeasureUnexplained(search, found);
       if (!best || unexplained < best->unexplained) {
         const KnownShape bare =
-            ReducedShape(WithoutBlur(shape), 1.0 / kReduction);
-        auto poses = ToPoses(sampled, found.places, bare, kReduction);
+            ReducedShape(WithoutBlur(shape), 1.0 / reduction);
+        auto poses = ToPoses(sampled, found.places, bare, reduction);
         if (poses) best = SizedStart{bare, std::move(*poses), unexplained};
       }
       const auto fitted = FitShapeAlongPath(search, found);

@@ -247,6 +247,7 @@ LayerFit Settle(const PictureStack& stack, int first_step,
   };
   for (int step = first_step;
        step < first_step + most_steps() && !fit.converged; ++step) {
+    options.until.Check();
     LinearizeAll(stack, layers, evidence.weight, fit.poses, options, frames);
     const bool textured = step > 0 && !layers.flat;
     Judge(stack, options, step, evidence.weight, fit, frames);

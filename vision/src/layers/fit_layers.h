@@ -8,6 +8,7 @@
 #include "layers/joint_step.h"
 #include "layers/layer_model.h"
 #include "layers/still_edges.h"
+#include "touchdown/core/cancellation.h"
 
 namespace touchdown::vision::layers {
 
@@ -27,6 +28,7 @@ struct FitLayersOptions {
   // 0.03 px beside strong textures: what pixels tell little of comes last.
   double tolerance = 0.02;
   int threads = 0;
+  core::Cancellation until;  // asked before each step
   // Straight edges of the whole still picture, in the stack's coordinates.
   std::vector<StillLine> lines;
 };

@@ -451,6 +451,7 @@ core::Expected<Track> FollowInLayers(Clip& clip, const Background& background,
   const Shape shape = LayerShape(track.body, size);
   FitLayersOptions options = MakeLayerOptions(track, shape, size);
   options.threads = threads;
+  options.until = until;
   LayerEvidence evidence =
       GatherEvidence(clip, background, track, shape, options);
   options.lines = FindLines(background, evidence, shape,

@@ -250,6 +250,12 @@ core::Expected<TrackResult> TrackFromLayers(Clip& clip,
   if (!options.size) {
     const auto start = FindKindAndSize(clip, options.kind, start_options);
     if (!start) return tl::unexpected(start.error());
+    // px of the body. Layers of more take minutes; 160 px of a ball do not.
+    constexpr double kMostArea = 2e4;
+    if (start->shape.long_side * start->shape.short_side > kMostArea) {
+      return core::AbsentBecause(
+          "what moves is too large to learn its picture");
+    }
     TrackOptions sized = options;
     sized.kind = start->shape.kind;
     sized.size = SizeOfStart(start->shape);
