@@ -169,11 +169,12 @@ std::vector<KnownShape> GuessShapes(core::BodyKind kind,
   return shapes;
 }
 
-// px of a cell's side where the body's size is not known: of a picture of
-// 640 x 400 the least, by which bodies of 16 px have the cells that a search
-// needs; of larger ones so that they take no more time.
+// px of a cell's side where the body's size is not known.
 std::int32_t ReductionOfAny(const ClipInfo& info) {
+  // Cells of a picture at the most: those of 640 x 400 px by the least
+  // reduction. More cost time.
   constexpr double kCells = 64e3;
+  // px: bodies of 16 px have the cells that a search needs then. Not studied.
   constexpr double kLeast = 2.0;
   const double pixels = static_cast<double>(info.width_px) * info.height_px;
   return static_cast<std::int32_t>(
