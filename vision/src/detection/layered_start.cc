@@ -163,6 +163,7 @@ std::vector<KnownShape> GuessShapes(core::BodyKind kind,
   // found from two of them at least.
   constexpr std::array kRatios = {1.0, 2.0, 4.0};
   std::vector<KnownShape> shapes;
+  shapes.reserve(kRatios.size());
   for (const double ratio : kRatios) {
     shapes.push_back({kind, std::sqrt(area * ratio), std::sqrt(area / ratio)});
   }

@@ -693,11 +693,12 @@ core::Expected<TrackResult> FollowBody(Clip& clip,
                 ShowsMarks(clip, result.background, track)
           : track.body.kind == core::BodyKind::kRectangle &&
                 !HasPlainFace(clip, result.background, track, options.threads);
-  if (needs_layers &&
-      TakeLayers(clip, options, covers.most, std::move(layered), result)) {
-    whole_px = 0.0;
-  } else if (NeedsLayers(track, covers.most) &&
-             TakeLayeredStart(clip, options, last, result)) {
+  const bool is_layered =
+      (needs_layers &&
+       TakeLayers(clip, options, covers.most, std::move(layered), result)) ||
+      (NeedsLayers(track, covers.most) &&
+       TakeLayeredStart(clip, options, last, result));
+  if (is_layered) {
     whole_px = 0.0;
   } else {
     FollowWhole(clip, options, *first, result, whole_px);
