@@ -384,6 +384,29 @@ TEST(Contact, WhatTurnsWhileItIsDownHasNoAngleOfItsTouchdown) {
   EXPECT_TRUE(core::IsNotBounce(result.first.state.label));
 }
 
+// Carried near the ground at first, and set down in a motion that is no flight:
+// no line of the ground is so far off that it was down from the start.
+TEST(Contact, WhatComesDownLaterIsNotDownFromTheStart) {
+  Throw thrown = Block(0.0);
+  thrown.contact_s = -1.0;
+  thrown.x_m = -1.2;
+  thrown.after = {1.2, 0.0, 0.0};
+  thrown.stays = true;
+  Filming filming;
+  PlaneTrack track = FilmPlane(thrown, filming);
+  constexpr double kCarried_px = 3.0;
+  ASSERT_LT(kCarried_px, 0.3 * track.half_short_px);
+  const std::size_t n = track.samples.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    const double share = static_cast<double>(i) / static_cast<double>(n);
+    const double lift = kCarried_px * std::clamp(2.0 - 3.0 * share, 0.0, 1.0);
+    track.samples[i].gap_px += lift;
+    track.samples[i].height_px += lift;
+  }
+  const ContactResult result = FindContacts(track, WithScale(filming));
+  EXPECT_FALSE(result.first.contact.found && result.first.contact.from_start);
+}
+
 // On an incline a spring turns it round each time it comes down; the line is
 // inclined to its path by what changes its gap by half a pixel, and that is
 // known to a hundredth.

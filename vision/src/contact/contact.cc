@@ -320,6 +320,21 @@ core::ContactRecord MeasureFromStart(RecordContext& context,
                     "it sinks {:.1f} px below where it is half of the time",
                     sunk));
   }
+  // Nor does it come down later from where it was carried first.
+  const double carried =
+      Median({gaps.begin() + static_cast<std::ptrdiff_t>(down.begin),
+              gaps.begin() + static_cast<std::ptrdiff_t>(down.end)});
+  // Of the frames: what lies lower is an outlier.
+  constexpr std::size_t kOfAll = 20;
+  const auto low =
+      gaps.begin() + static_cast<std::ptrdiff_t>(gaps.size() / kOfAll);
+  std::nth_element(gaps.begin(), low, gaps.end());
+  if (carried - *low > NearLine(track, track.samples.front(), kSinkShare)) {
+    return NoContact(
+        fmt::format("its path is neither a flight nor along the ground line: "
+                    "it comes down by {:.1f} px from where it is at first",
+                    carried - *low));
+  }
   return RecordFromStart(context, down, trend.slope_rad);
 }
 
