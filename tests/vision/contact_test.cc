@@ -394,7 +394,7 @@ TEST(Contact, WhatComesDownLaterIsNotDownFromTheStart) {
   thrown.stays = true;
   Filming filming;
   PlaneTrack track = FilmPlane(thrown, filming);
-  constexpr double kCarried_px = 3.0;
+  constexpr double kCarried_px = 2.5;
   ASSERT_LT(kCarried_px, 0.3 * track.half_short_px);
   const std::size_t n = track.samples.size();
   for (std::size_t i = 0; i < n; ++i) {
