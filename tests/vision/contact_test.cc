@@ -324,14 +324,20 @@ TEST(Contact, FaceAngleLiesInItsHalfTurn) {
   }
 }
 
+// The same body, which came down long before it was filmed.
+Throw SlidingFromTheStart(Throw thrown) {
+  thrown.contact_s = -1.0;
+  thrown.x_m = -1.2;
+  thrown.after = {1.2, 0.0, 0.0};
+  thrown.stays = true;
+  return thrown;
+}
+
 TEST(Contact, OnTheGroundFromTheStart) {
   for (const auto kind :
        {core::BodyKind::kSphere, core::BodyKind::kRectangle}) {
-    Throw thrown = kind == core::BodyKind::kSphere ? Throw{} : Block(0.0);
-    thrown.contact_s = -1.0;
-    thrown.x_m = -1.2;
-    thrown.after = {1.2, 0.0, 0.0};
-    thrown.stays = true;
+    const Throw thrown = SlidingFromTheStart(
+        kind == core::BodyKind::kSphere ? Throw{} : Block(0.0));
     for (std::uint64_t seed = 1; seed <= 20; ++seed) {
       Filming filming;
       filming.seed = seed;
@@ -357,11 +363,7 @@ TEST(Contact, OnTheGroundFromTheStart) {
 // A block that slides on a corner and tips onto its face: it came down before
 // it was filmed, at angles that nobody saw.
 TEST(Contact, WhatTurnsWhileItIsDownHasNoAngleOfItsTouchdown) {
-  Throw thrown = Block(0.0);
-  thrown.contact_s = -1.0;
-  thrown.x_m = -1.2;
-  thrown.after = {1.2, 0.0, 0.0};
-  thrown.stays = true;
+  const Throw thrown = SlidingFromTheStart(Block(0.0));
   Filming filming;
   PlaneTrack track = FilmPlane(thrown, filming);
   const auto n = static_cast<double>(track.samples.size());
@@ -387,11 +389,7 @@ TEST(Contact, WhatTurnsWhileItIsDownHasNoAngleOfItsTouchdown) {
 // Carried near the ground at first, and set down in a motion that is no flight:
 // no line of the ground is so far off that it was down from the start.
 TEST(Contact, WhatComesDownLaterIsNotDownFromTheStart) {
-  Throw thrown = Block(0.0);
-  thrown.contact_s = -1.0;
-  thrown.x_m = -1.2;
-  thrown.after = {1.2, 0.0, 0.0};
-  thrown.stays = true;
+  const Throw thrown = SlidingFromTheStart(Block(0.0));
   Filming filming;
   PlaneTrack track = FilmPlane(thrown, filming);
   // Poses that follow the pixels' rows: in steps, which no flight has.
@@ -410,17 +408,14 @@ TEST(Contact, WhatComesDownLaterIsNotDownFromTheStart) {
   }
   const ContactResult result = FindContacts(track, WithScale(filming));
   EXPECT_FALSE(result.first.contact.found);
+  EXPECT_THAT(result.first.contact.reason, HasSubstr("comes down by 2.5 px"));
 }
 
 // On an incline a spring turns it round each time it comes down; the line is
 // inclined to its path by what changes its gap by half a pixel, and that is
 // known to a hundredth.
 TEST(Contact, CarriedToAndFroFromTheStart) {
-  Throw thrown = Block(0.0);
-  thrown.contact_s = -1.0;
-  thrown.x_m = -1.2;
-  thrown.after = {1.2, 0.0, 0.0};
-  thrown.stays = true;
+  const Throw thrown = SlidingFromTheStart(Block(0.0));
   Filming filming;
   PlaneTrack track = FilmPlane(thrown, filming);
   ASSERT_GE(track.samples.size(), 30u);

@@ -87,4 +87,28 @@ inline std::unique_ptr<Clip> DrawBlock(const DrawnBlock& block) {
                                      block.frames, kFps, draw);
 }
 
+// A block of 48 px that goes 60 px in all, its own length and a quarter: one
+// pixel is covered in four frames of five.
+inline DrawnBlock SlowBlock() {
+  DrawnBlock block;
+  block.pose = [](std::int64_t frame) {
+    const auto t = static_cast<double>(frame);
+    return BlockPose{70.0 + 1.5 * t, 70.0 - 0.01 * (t - 20.0) * (t - 20.0),
+                     0.01 * (t - 20.0)};
+  };
+  return block;
+}
+
+// The same, higher; half of what is drawn on it looks like the wall, so that no
+// outline shows it.
+inline DrawnBlock SlowBlockLikeTheWall() {
+  DrawnBlock block = SlowBlock();
+  block.half_short_px = 14.0;
+  block.level_dn = 110.0;
+  block.face = [](double along, double across) {
+    return 60.0 * std::sin(0.4 * along) * std::cos(0.3 * across);
+  };
+  return block;
+}
+
 }  // namespace touchdown::vision::synthetic

@@ -16,6 +16,8 @@ namespace {
 
 using synthetic::DrawBlock;
 using synthetic::DrawnBlock;
+using synthetic::SlowBlock;
+using synthetic::SlowBlockLikeTheWall;
 
 LayeredStartOptions OptionsFor(const DrawnBlock& block) {
   LayeredStartOptions options;
@@ -23,18 +25,6 @@ LayeredStartOptions OptionsFor(const DrawnBlock& block) {
                    2.0 * block.half_short_px};
   options.threads = 1;
   return options;
-}
-
-// A block of 48 px that goes 60 px in all: the mean of the frames is the body.
-DrawnBlock Slow() {
-  DrawnBlock block;
-  block.pose = [](std::int64_t frame) {
-    const auto t = static_cast<double>(frame);
-    return synthetic::BlockPose{70.0 + 1.5 * t,
-                                70.0 - 0.01 * (t - 20.0) * (t - 20.0),
-                                0.01 * (t - 20.0)};
-  };
-  return block;
 }
 
 // Within four pixels and eight degrees of the block in every frame.
@@ -61,7 +51,7 @@ void ExpectFollowed(const DrawnBlock& block) {
 }
 
 TEST(FindLayeredStart, FollowsABodyThatCoversItsOwnPlace) {
-  ExpectFollowed(Slow());
+  ExpectFollowed(SlowBlock());
 }
 
 // Its middle is covered in all frames, and what it uncovers behind it looks
@@ -78,7 +68,7 @@ TEST(FindLayeredStart, FollowsABodyThatGoesAThirdOfItsLength) {
 }
 
 TEST(FindLayeredStart, DoesNotDependOnThreads) {
-  const DrawnBlock block = Slow();
+  const DrawnBlock block = SlowBlock();
   const auto clip = DrawBlock(block);
   LayeredStartOptions options = OptionsFor(block);
   const auto one = FindLayeredStart(*clip, options);
@@ -120,7 +110,7 @@ TEST(FindLayeredStart, TakesWhatACodecRepeatsForNoise) {
 }
 
 TEST(FindLayeredStart, RefusesAShapeWithoutSize) {
-  const auto clip = DrawBlock(Slow());
+  const auto clip = DrawBlock(SlowBlock());
   EXPECT_THROW(FindLayeredStart(*clip, {}), std::invalid_argument);
 }
 
@@ -134,12 +124,7 @@ LayeredStartOptions OptionsFor(core::BodyKind kind) {
 // Sides to three cells of 2 px; half of what is drawn on it looks like the
 // wall.
 TEST(FindSizedStart, FindsSidesThatNobodyStated) {
-  DrawnBlock block = Slow();
-  block.half_short_px = 14.0;
-  block.level_dn = 110.0;
-  block.face = [](double along, double across) {
-    return 60.0 * std::sin(0.4 * along) * std::cos(0.3 * across);
-  };
+  const DrawnBlock block = SlowBlockLikeTheWall();
   const auto clip = DrawBlock(block);
   const auto start =
       FindSizedStart(*clip, OptionsFor(core::BodyKind::kRectangle));

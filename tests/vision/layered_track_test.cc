@@ -17,6 +17,8 @@ namespace {
 using synthetic::BlockPose;
 using synthetic::DrawBlock;
 using synthetic::DrawnBlock;
+using synthetic::SlowBlock;
+using synthetic::SlowBlockLikeTheWall;
 
 TrackOptions OptionsFor(const DrawnBlock& block) {
   TrackOptions options;
@@ -27,24 +29,9 @@ TrackOptions OptionsFor(const DrawnBlock& block) {
   return options;
 }
 
-// As far as its own length and a quarter, so that one pixel is covered in four
-// frames of five.
-DrawnBlock Slow() {
-  DrawnBlock block;
-  block.pose = [](std::int64_t frame) {
-    const auto t = static_cast<double>(frame);
-    return BlockPose{70.0 + 1.5 * t, 70.0 - 0.01 * (t - 20.0) * (t - 20.0),
-                     0.01 * (t - 20.0)};
-  };
-  return block;
-}
-
-TEST(TrackBody, FollowsABodyOfKnownSizeThatCoversItsOwnPlace) {
-  const DrawnBlock block = Slow();
-  const auto clip = DrawBlock(block);
-  const auto result = TrackBody(*clip, OptionsFor(block));
-  ASSERT_TRUE(result) << result.error().reason;
-  const Track& track = result->track;
+// Its sides, and its pose in nearly every frame.
+void ExpectFound(const Track& track, const DrawnBlock& block) {
+  ASSERT_EQ(track.body.kind, core::BodyKind::kRectangle);
   EXPECT_NEAR(track.body.half_long_px.value, block.half_long_px, 0.2);
   EXPECT_NEAR(track.body.half_short_px.value, block.half_short_px, 0.2);
   EXPECT_GE(track.poses.size(), 36U);
@@ -59,29 +46,20 @@ TEST(TrackBody, FollowsABodyOfKnownSizeThatCoversItsOwnPlace) {
   }
 }
 
-// Half of what is drawn on it looks like the wall, so that no outline shows the
-// body, and nobody stated its size.
-TEST(TrackBody, FindsABlockWhoseFaceLooksLikeTheWallInPart) {
-  DrawnBlock block = Slow();
-  block.half_short_px = 14.0;
-  block.level_dn = 110.0;
-  block.face = [](double along, double across) {
-    return 60.0 * std::sin(0.4 * along) * std::cos(0.3 * across);
-  };
+TEST(TrackBody, FollowsABodyOfKnownSizeThatCoversItsOwnPlace) {
+  const DrawnBlock block = SlowBlock();
+  const auto result = TrackBody(*DrawBlock(block), OptionsFor(block));
+  ASSERT_TRUE(result) << result.error().reason;
+  ExpectFound(result->track, block);
+}
+
+TEST(TrackBody, FindsABlockOfNoStatedSizeThatLooksLikeTheWallInPart) {
+  const DrawnBlock block = SlowBlockLikeTheWall();
   TrackOptions options;
   options.threads = 1;
   const auto result = TrackBody(*DrawBlock(block), options);
   ASSERT_TRUE(result) << result.error().reason;
-  const Track& track = result->track;
-  ASSERT_EQ(track.body.kind, core::BodyKind::kRectangle);
-  EXPECT_NEAR(track.body.half_long_px.value, block.half_long_px, 0.3);
-  EXPECT_NEAR(track.body.half_short_px.value, block.half_short_px, 0.3);
-  EXPECT_GE(track.poses.size(), 36U);
-  for (const Pose& pose : track.poses) {
-    const BlockPose truth = block.pose(pose.frame);
-    EXPECT_NEAR(pose.centre.x_px, truth.x_px, 0.3) << pose.frame;
-    EXPECT_NEAR(pose.centre.y_px, truth.y_px, 0.3) << pose.frame;
-  }
+  ExpectFound(result->track, block);
 }
 
 constexpr double kRadius_px = 16.0;
@@ -125,7 +103,7 @@ TEST(TrackFromLayers, RefusesASizeThatOutlinesDoNotShow) {
 }
 
 TEST(MayFollowGhost, NeedsAStatedSize) {
-  const DrawnBlock block = Slow();
+  const DrawnBlock block = SlowBlock();
   const auto clip = DrawBlock(block);
   Track track;
   track.last_frame = clip->info().frames;

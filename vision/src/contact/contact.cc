@@ -324,7 +324,8 @@ core::ContactRecord MeasureFromStart(RecordContext& context,
   const double carried =
       Median({gaps.begin() + static_cast<std::ptrdiff_t>(down.begin),
               gaps.begin() + static_cast<std::ptrdiff_t>(down.end)});
-  // Of the frames: what lies lower is an outlier.
+  // One frame in so many may lie lower, as an outlier. More of them hide that a
+  // body came down at last; fewer refuse one for an outlier. Not studied.
   constexpr std::size_t kOfAll = 20;
   const auto low =
       gaps.begin() + static_cast<std::ptrdiff_t>(gaps.size() / kOfAll);
@@ -332,7 +333,8 @@ core::ContactRecord MeasureFromStart(RecordContext& context,
   if (carried - *low > NearLine(track, track.samples.front(), kSinkShare)) {
     return NoContact(
         fmt::format("its path is neither a flight nor along the ground line: "
-                    "it comes down by {:.1f} px from where it is at first",
+                    "it comes down by {:.1f} px from where it is at first; "
+                    "check --ground, or give --frames",
                     carried - *low));
   }
   return RecordFromStart(context, down, trend.slope_rad);

@@ -26,21 +26,21 @@ namespace {
 
 // Where the body should be in a frame: interpolated between two measured poses,
 // or extrapolated along a straight line from the ends of the track.
-Pose ExpectedPose(const Track& track, std::int64_t frame) {
+Pose ExpectedPose(const Track &track, std::int64_t frame) {
   if (const auto pose = InterpolatePose(track, frame)) return *pose;
-  const auto& poses = track.poses;
+  const auto &poses = track.poses;
   const bool before = frame < poses.front().frame;
-  const Pose& end = before ? poses.front() : poses.back();
-  const Pose& next = before ? poses[1] : poses[poses.size() - 2];
+  const Pose &end = before ? poses.front() : poses.back();
+  const Pose &next = before ? poses[1] : poses[poses.size() - 2];
   return OnTheWay(end, next, frame);
 }
 
 // Fits outlines again, each fit started from the pose that the track expects.
-std::vector<Fitted> FitFromTrack(Clip& clip, const Background& background,
-                                 const Track& track,
-                                 const TrackOptions& options,
+std::vector<Fitted> FitFromTrack(Clip &clip, const Background &background,
+                                 const Track &track,
+                                 const TrackOptions &options,
                                  OutlineOptions fit_options,
-                                 const std::vector<std::int64_t>& frames) {
+                                 const std::vector<std::int64_t> &frames) {
   fit_options.ground = options.ground;
   std::vector<OutlineJob> jobs;
   jobs.reserve(frames.size());
@@ -54,16 +54,16 @@ std::vector<Fitted> FitFromTrack(Clip& clip, const Background& background,
 // Rejects outlines of another size than the median: a rigid body has one size,
 // and an outline of another sits on another edge of it, such as the rim behind
 // its face.
-void DropOtherSizes(std::vector<Fitted>& all) {
+void DropOtherSizes(std::vector<Fitted> &all) {
   // Ratio of a size to the median. Larger: outlines of a rim stay; smaller:
   // honest outlines of a small body go. Set with the recorded hoops, whose face
   // and rim differ by more.
   constexpr double kMaxSizeRatio = 1.05;
   std::vector<double> sizes;
   sizes.reserve(all.size());
-  for (const Fitted& f : all) sizes.push_back(OutlineSize(f.fit));
+  for (const Fitted &f : all) sizes.push_back(OutlineSize(f.fit));
   const double size = Median(std::move(sizes));
-  std::erase_if(all, [&](const Fitted& f) {
+  std::erase_if(all, [&](const Fitted &f) {
     return OutlineSize(f.fit) > kMaxSizeRatio * size ||
            kMaxSizeRatio * OutlineSize(f.fit) < size;
   });
@@ -79,7 +79,7 @@ std::vector<std::int64_t> ListFrames(std::int64_t first, std::int64_t last,
 
 // The pixels around the outline are the background's where that is known, else
 // a polynomial.
-OutlineOptions MakeFitOptions(const Track& track) {
+OutlineOptions MakeFitOptions(const Track &track) {
   OutlineOptions fit_options;
   fit_options.surround =
       track.known_background ? Surround::kBackground : Surround::kPolynomial;
@@ -90,9 +90,9 @@ OutlineOptions MakeFitOptions(const Track& track) {
 // Fits all frames where so far only every `step`-th frame was fitted, and those
 // at the ends that the coarse sampling may have missed. Returns a warning, or
 // nothing.
-std::string FitSkippedFrames(Clip& clip, const Background& background,
-                             const TrackOptions& options, std::int64_t step,
-                             bool one_size, Track& track) {
+std::string FitSkippedFrames(Clip &clip, const Background &background,
+                             const TrackOptions &options, std::int64_t step,
+                             bool one_size, Track &track) {
   const OutlineOptions fit_options = MakeFitOptions(track);
   const std::int64_t first =
       std::max(options.first, track.poses.front().frame - step + 1);
@@ -105,7 +105,7 @@ std::string FitSkippedFrames(Clip& clip, const Background& background,
                        ListFrames(first, last, 1));
     // A damaged file: the track ends at the first frame that cannot be read,
     // with a warning, rather than be lost.
-  } catch (const core::InputError&) {
+  } catch (const core::InputError &) {
     std::string reason;
     const std::int64_t bad = FirstUnreadable(clip, first, last + 1, reason);
     warning = fmt::format("frames from {} on cannot be read: {}", bad, reason);
@@ -130,9 +130,9 @@ std::string FitSkippedFrames(Clip& clip, const Background& background,
 // (between_looks.h); Refine starts the others on the cubic. `looks`: the
 // outlines that the track was made of. Returns false, and does nothing, where
 // the frames between are needed.
-bool FitWhereNotSmooth(Clip& clip, const Background& background,
-                       const TrackOptions& options, std::int64_t step,
-                       const std::vector<Fitted>& looks, Track& track) {
+bool FitWhereNotSmooth(Clip &clip, const Background &background,
+                       const TrackOptions &options, std::int64_t step,
+                       const std::vector<Fitted> &looks, Track &track) {
   // A body whose size changes needs all frames: each tells its own.
   if (!track.known_background || !IsSteady(track) || MayChangeSize(looks)) {
     return false;
@@ -158,12 +158,12 @@ bool FitWhereNotSmooth(Clip& clip, const Background& background,
                                          MakeFitOptions(track), frames);
   all.insert(all.end(), looks.begin(), looks.end());
   std::sort(all.begin(), all.end(),
-            [](const Fitted& a, const Fitted& b) { return a.frame < b.frame; });
+            [](const Fitted &a, const Fitted &b) { return a.frame < b.frame; });
   DropStrangers(all);
-  const auto is_there = [&](const Fitted& look) {
+  const auto is_there = [&](const Fitted &look) {
     return std::binary_search(
         all.begin(), all.end(), look,
-        [](const Fitted& a, const Fitted& b) { return a.frame < b.frame; });
+        [](const Fitted &a, const Fitted &b) { return a.frame < b.frame; });
   };
   // Interpolation needs both ends of each gap.
   if (!std::all_of(looks.begin(), looks.end(), is_there)) return false;
@@ -178,13 +178,13 @@ bool FitWhereNotSmooth(Clip& clip, const Background& background,
 
 // Makes the track of a hypothesis's strongest tracklet. Warnings, and the
 // length of the whole, come later.
-Track MakeTrack(const Look& look, const Clip& clip,
-                const TrackOptions& options) {
+Track MakeTrack(const Look &look, const Clip &clip,
+                const TrackOptions &options) {
   Track track;
   track.first_frame = options.first;
   track.last_frame = look.found.last;
   track.frame_interval_s = 1.0 / clip.info().time_base.fps;
-  const Chain& chain = look.found.chains.front();
+  const Chain &chain = look.found.chains.front();
   for (std::size_t i = 1; i < look.found.chains.size(); ++i) {
     track.several_bodies |= IsAnotherBody(chain, look.found.chains[i]);
   }
@@ -195,8 +195,8 @@ Track MakeTrack(const Look& look, const Clip& clip,
 
 // Which pixels the body covers, and how often: the background is estimated
 // without them.
-Covers FindTrackCovers(Clip& clip, const TrackOptions& options,
-                       const Track& track) {
+Covers FindTrackCovers(Clip &clip, const TrackOptions &options,
+                       const Track &track) {
   const BodyCover cover(clip, track);
   return FindCovers(
       options.first, track.last_frame,
@@ -207,7 +207,7 @@ Covers FindTrackCovers(Clip& clip, const TrackOptions& options,
 // Whether the body may have been lost where it passed its own ghost: where a
 // body is in the background's samples often, the estimated background shows it
 // faintly, and a difference to that background is small.
-bool IsTorn(const Look& look) {
+bool IsTorn(const Look &look) {
   // Share of the detections that have an outline. Larger repeats the search in
   // clips that are right, at the cost of time only. Not studied.
   constexpr double kWholeShare = 0.9;
@@ -218,7 +218,7 @@ bool IsTorn(const Look& look) {
 }
 
 // Whether outlines explain the pixels to about their noise.
-bool IsWellModelled(const Track& track) {
+bool IsWellModelled(const Track &track) {
   return MedianMisfit(track.poses) <= kWellModelled;
 }
 
@@ -228,9 +228,9 @@ bool IsWellModelled(const Track& track) {
 // for a disc that stands out by its levels alone: what moves with a ball before
 // an unknown background is its shadow. Not where a sphere was stated: its whole
 // outline is the circle that was fitted.
-void FollowWhole(Clip& clip, const TrackOptions& options, const Look& look,
-                 TrackResult& result, double& whole_px) {
-  Track& track = result.track;
+void FollowWhole(Clip &clip, const TrackOptions &options, const Look &look,
+                 TrackResult &result, double &whole_px) {
+  Track &track = result.track;
   const bool ball_by_levels = track.body.kind == core::BodyKind::kSphere &&
                               look.surround != Surround::kBackground;
   const bool stated_ball = options.kind == core::BodyKind::kSphere;
@@ -239,7 +239,7 @@ void FollowWhole(Clip& clip, const TrackOptions& options, const Look& look,
     return;
   }
   auto whole = FindWhole(clip, result.background, track, options);
-  const Chain& chain = look.found.chains.front();
+  const Chain &chain = look.found.chains.front();
   // Share of the detections that have a pose. With fewer poses the path of the
   // blobs is tried, too. Not studied.
   constexpr double kFewPoses = 0.5;
@@ -280,8 +280,8 @@ constexpr double kLeastOfSeen = 0.95;
 
 // The share of all that changes in the clip that a track explains
 // (explained_change.h); 0 where it is not of the stated size.
-double ShareExplained(Clip& clip, const TrackOptions& options,
-                      const Track& track) {
+double ShareExplained(Clip &clip, const TrackOptions &options,
+                      const Track &track) {
   if (options.size && !IsOfSize(track.body, *options.size)) return 0.0;
   ExplainedChangeOptions change;
   change.still_frames = options.still_frames;
@@ -291,13 +291,13 @@ double ShareExplained(Clip& clip, const TrackOptions& options,
 }
 
 // Measures a result again by the two-layer model.
-core::Expected<TrackResult> InLayers(Clip& clip, const TrackOptions& options,
+core::Expected<TrackResult> InLayers(Clip &clip, const TrackOptions &options,
                                      TrackResult result) {
   auto track = FollowInLayers(clip, result.background, result.track,
                               options.size, options.threads);
   if (!track) return tl::unexpected(track.error());
   result.track = std::move(*track);
-  if (const auto& gamma = result.track.body.gamma) {
+  if (const auto &gamma = result.track.body.gamma) {
     result.background = InLight(result.background,
                                 MakeLightScale(clip.info().bit_depth, *gamma));
   }
@@ -305,10 +305,10 @@ core::Expected<TrackResult> InLayers(Clip& clip, const TrackOptions& options,
 }
 
 // The body from a layered start (layered_start.h), in layers.
-core::Expected<TrackResult> StartInLayers(Clip& clip,
-                                          const TrackOptions& options,
+core::Expected<TrackResult> StartInLayers(Clip &clip,
+                                          const TrackOptions &options,
                                           std::int64_t last,
-                                          const Background& fallback) {
+                                          const Background &fallback) {
   auto started = TrackFromLayers(clip, options, last, fallback);
   if (!started) return started;
   return InLayers(clip, options, std::move(*started));
@@ -316,10 +316,10 @@ core::Expected<TrackResult> StartInLayers(Clip& clip,
 
 // The rectangle that is seen along a track's poses, and the background without
 // it. Absent where it has no end.
-core::Expected<TrackResult> LookAlongPoses(Clip& clip,
-                                           const TrackOptions& options,
-                                           const Track& track,
-                                           const Background& fallback) {
+core::Expected<TrackResult> LookAlongPoses(Clip &clip,
+                                           const TrackOptions &options,
+                                           const Track &track,
+                                           const Background &fallback) {
   // Of the sides, beyond the outline: what it may have left out. More looks at
   // what stands beside the body. Not studied.
   constexpr double kMargin = 0.2;
@@ -329,7 +329,7 @@ core::Expected<TrackResult> LookAlongPoses(Clip& clip,
   out.track = track;
   for (int round = 0; round < kMostRounds; ++round) {
     Track wide = out.track;
-    for (double* half :
+    for (double *half :
          {&wide.body.half_long_px.value, &wide.body.half_short_px.value}) {
       *half += std::max(kMargin * *half, kLeastMargin_px);
     }
@@ -346,10 +346,10 @@ core::Expected<TrackResult> LookAlongPoses(Clip& clip,
 
 // Layers from the rectangle that is seen along the poses of `layered`; all else
 // is that of the outlines.
-core::Expected<TrackResult> InSeenRectangle(Clip& clip,
-                                            const TrackOptions& options,
-                                            const TrackResult& layered,
-                                            const TrackResult& outlines) {
+core::Expected<TrackResult> InSeenRectangle(Clip &clip,
+                                            const TrackOptions &options,
+                                            const TrackResult &layered,
+                                            const TrackResult &outlines) {
   auto seen = LookAlongPoses(clip, options, layered.track, outlines.background);
   if (!seen) return seen;
   Track start = outlines.track;
@@ -369,8 +369,8 @@ struct Explained {
 // A block's outline that was led astray explains less than usual. While less
 // than `enough` is explained, the rectangle that is seen is followed, and once
 // more with better poses.
-Explained ImproveOutline(Clip& clip, const TrackOptions& options,
-                         const TrackResult& outlines, TrackResult layered,
+Explained ImproveOutline(Clip &clip, const TrackOptions &options,
+                         const TrackResult &outlines, TrackResult layered,
                          double share, double enough) {
   constexpr int kMostRounds = 3;  // two were enough in the clips looked at
   Explained best{std::move(layered), share};
@@ -387,8 +387,8 @@ Explained ImproveOutline(Clip& clip, const TrackOptions& options,
 // What layers and the seen rectangle tell differently of a block's sides is
 // part of their u: before a texture layers may settle on others. `behind`: a
 // background in levels.
-void WidenSides(Clip& clip, const TrackOptions& options,
-                const Background& behind, Track& track) {
+void WidenSides(Clip &clip, const TrackOptions &options,
+                const Background &behind, Track &track) {
   if (track.body.kind != core::BodyKind::kRectangle) return;
   const auto seen = LookAlongPoses(clip, options, track, behind);
   if (!seen) return;
@@ -396,7 +396,7 @@ void WidenSides(Clip& clip, const TrackOptions& options,
   // sides of photographed blocks eight in ten differ by less. Larger misses
   // what layers are off by; smaller widens u of right ones.
   constexpr double kUsual_px = 0.15;
-  const auto widen = [](core::Estimate& half, const core::Estimate& other) {
+  const auto widen = [](core::Estimate &half, const core::Estimate &other) {
     const double off = half.value - other.value;
     const double beyond = std::max(0.0, off * off - kUsual_px * kUsual_px);
     half.u = std::sqrt(half.u * half.u + beyond);
@@ -408,9 +408,9 @@ void WidenSides(Clip& clip, const TrackOptions& options,
 // Replaces the result's outlines of a stated body by the two-layer fit: from
 // these outlines or, where they may be those of a ghost, from a layered start:
 // `started`, where it was made already.
-bool TakeLayers(Clip& clip, const TrackOptions& options, double most_covered,
+bool TakeLayers(Clip &clip, const TrackOptions &options, double most_covered,
                 std::optional<core::Expected<TrackResult>> started,
-                TrackResult& result) {
+                TrackResult &result) {
   core::Expected<TrackResult> best = core::AbsentBecause("not of the size");
   if (!options.size || IsOfSize(result.track.body, *options.size)) {
     best = InLayers(clip, options, result);
@@ -460,17 +460,23 @@ bool TakeLayers(Clip& clip, const TrackOptions& options, double most_covered,
   return true;
 }
 
+// The background of all frames up to `last`.
+Background EstimateFromAll(Clip &clip, const TrackOptions &options,
+                           std::int64_t last) {
+  return EstimateBackground(clip, options.first, last,
+                            ChooseBackgroundOptions(clip, options));
+}
+
 // Replaces a result that explains too little of the clip, of a body whose size
 // nobody stated, by a layered start.
-bool TakeLayeredStart(Clip& clip, const TrackOptions& options,
-                      std::int64_t last, TrackResult& result) {
+bool TakeLayeredStart(Clip &clip, const TrackOptions &options,
+                      std::int64_t last, TrackResult &result) {
   if (options.size || !CanStartFromLayers(clip, options) ||
       ShareExplained(clip, options, result.track) >= kLeastExplained) {
     return false;
   }
-  const Background all = EstimateBackground(
-      clip, options.first, last, ChooseBackgroundOptions(clip, options));
-  auto outlines = TrackFromLayers(clip, options, last, all);
+  auto outlines = TrackFromLayers(clip, options, last,
+                                  EstimateFromAll(clip, options, last));
   if (!outlines) return false;
   auto layered = InLayers(clip, options, *outlines);
   if (!layered) return false;
@@ -491,10 +497,10 @@ bool TakeLayeredStart(Clip& clip, const TrackOptions& options,
 // its outlines once more where the background that it was found before held it,
 // or was not known, and may have misled the choice. Kept, with `behind` as the
 // result's background, if enough outlines are as smooth.
-void ChooseBehind(Clip& clip, const TrackOptions& options, double most_covered,
-                  Background behind, Look& first, TrackResult& result) {
-  Track& track = result.track;
-  const Chain& chain = first.found.chains.front();
+void ChooseBehind(Clip &clip, const TrackOptions &options, double most_covered,
+                  Background behind, Look &first, TrackResult &result) {
+  Track &track = result.track;
+  const Chain &chain = first.found.chains.front();
   if (most_covered <= kUntouched && track.known_background) {
     // A body of another shape would show through its mask.
     if (IsWellModelled(track)) result.background = std::move(behind);
@@ -504,7 +510,7 @@ void ChooseBehind(Clip& clip, const TrackOptions& options, double most_covered,
       ChooseKind(clip, behind, chain, options, Surround::kBackground);
   if (again.badness >= first.choice.badness && !track.known_background) return;
   // At least half of the outlines must remain.
-  const auto enough = [&](const std::vector<Fitted>& fits) {
+  const auto enough = [&](const std::vector<Fitted> &fits) {
     return fits.size() * 2 >= first.fits.size();
   };
   std::vector<Fitted> better;
@@ -545,20 +551,20 @@ void ChooseBehind(Clip& clip, const TrackOptions& options, double most_covered,
 // was lost, the kind of body once more, outlines of all frames, and at last
 // layers, a layered start without a size, or a template where outlines do not
 // explain the body.
-core::Expected<TrackResult> FollowBody(Clip& clip,
-                                       const TrackOptions& options) {
+core::Expected<TrackResult> FollowBody(Clip &clip,
+                                       const TrackOptions &options) {
   std::int64_t last = options.last < 0
                           ? clip.info().frames
                           : std::min(options.last, clip.info().frames);
-  const core::Cancellation& until = clip.cancellation();
+  const core::Cancellation &until = clip.cancellation();
   until.Enter("the body is looked for");
   TrackResult result;
   std::string warning;
   // Of a damaged file what can be read is looked at.
-  const auto look = [&](const auto& once) {
+  const auto look = [&](const auto &once) {
     try {
       once();
-    } catch (const core::InputError&) {
+    } catch (const core::InputError &) {
       std::string reason;
       last = FirstUnreadable(clip, options.first, last, reason);
       if (last == options.first) throw;
@@ -576,17 +582,14 @@ core::Expected<TrackResult> FollowBody(Clip& clip,
     if (!warning.empty()) (*layered)->track.warnings.push_back(warning);
     return std::move(*layered);
   };
-  const auto from_all_frames = [&] {
-    return EstimateBackground(clip, options.first, last,
-                              ChooseBackgroundOptions(clip, options));
-  };
   // A clip that is decoded whole is looked at in layers at once: in 13 clips in
   // H.264 (crf 23) a plain look cost as much as the start, 4.1 ms a frame.
   const bool starts_in_layers =
       options.size && options.kind && CanStartFromLayers(clip, options);
   if (starts_in_layers && !clip.windows_are_cheap()) {
     look([&] {
-      layered = StartInLayers(clip, options, last, from_all_frames());
+      layered = StartInLayers(clip, options, last,
+                              EstimateFromAll(clip, options, last));
     });
     if (explains_clip()) return as_answer();
     until.Enter("the body is looked for");
@@ -617,13 +620,14 @@ core::Expected<TrackResult> FollowBody(Clip& clip,
     }
     // One that was tried already does not explain the clip.
     if (layered || !starts_in_layers) return tl::unexpected(first.error());
-    layered = StartInLayers(clip, options, last, from_all_frames());
+    layered = StartInLayers(clip, options, last,
+                            EstimateFromAll(clip, options, last));
     if (!explains_clip()) return tl::unexpected(first.error());
     return as_answer();
   }
 
   until.Enter("the background behind the body is estimated");
-  Track& track = result.track;
+  Track &track = result.track;
   track = MakeTrack(*first, clip, options);
   // The body's place is known now: the background is estimated without it.
   Covers covers = FindTrackCovers(clip, options, track);
@@ -658,7 +662,7 @@ core::Expected<TrackResult> FollowBody(Clip& clip,
     result.background = std::move(first->background);
     ChooseBehind(clip, options, covers.most, std::move(behind), *first, result);
   }
-  const Chain& chain = first->found.chains.front();
+  const Chain &chain = first->found.chains.front();
   double whole_px = 0.0;
   if (first->choice.kind == core::BodyKind::kRectangle) {
     for (std::size_t i = 1; i < first->found.chains.size(); ++i) {
@@ -721,7 +725,7 @@ core::Expected<TrackResult> FollowBody(Clip& clip,
 
 }  // namespace
 
-core::Expected<TrackResult> TrackBody(Clip& clip, const TrackOptions& options) {
+core::Expected<TrackResult> TrackBody(Clip &clip, const TrackOptions &options) {
   core::Expected<TrackResult> result = FollowBody(clip, options);
   if (!result) return result;
   result->track.is_predicted = clip.info().is_predicted;
@@ -731,8 +735,8 @@ core::Expected<TrackResult> TrackBody(Clip& clip, const TrackOptions& options) {
   return result;
 }
 
-Track FitEveryFrame(Clip& clip, const Background& background,
-                    const Track& track, const TrackOptions& options) {
+Track FitEveryFrame(Clip &clip, const Background &background,
+                    const Track &track, const TrackOptions &options) {
   Track whole = track;
   if (track.step <= 1) return whole;
   clip.cancellation().Enter("outlines are fitted");
