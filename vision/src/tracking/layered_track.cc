@@ -12,6 +12,7 @@
 #include "outline/body_cover.h"
 #include "outline/outline_batch.h"
 #include "outline/track_shape.h"
+#include "tracking/track_cover.h"
 
 namespace touchdown::vision {
 namespace {
@@ -65,18 +66,6 @@ Track TrackOfStart(const Clip& clip, const TrackOptions& options,
     track.poses.push_back(pose);
   }
   return track;
-}
-
-// The background from what the track's body leaves uncovered.
-Background EstimateUncovered(Clip& clip, const TrackOptions& options,
-                             const Track& track, const Background& fallback) {
-  const BodyCover cover(clip, track);
-  const BackgroundOptions still = ChooseBackgroundOptions(clip, options);
-  const Covers covers = FindCovers(
-      track.first_frame, track.last_frame,
-      [&cover](std::int64_t frame) { return cover.CoverInFrame(frame); },
-      still);
-  return EstimateMaskedBackground(clip, covers, fallback, still);
 }
 
 // Fits outlines in frames that are spread over those that the track spans, from

@@ -11,13 +11,13 @@
 #include "outline/body_cover.h"
 #include "outline/outline_batch.h"
 #include "touchdown/core/errors.h"
-#include "touchdown/vision/explanation/explained_change.h"
 #include "track/image_size.h"
 #include "tracking/between_looks.h"
 #include "tracking/follow_in_layers.h"
 #include "tracking/follow_pattern.h"
 #include "tracking/layered_track.h"
-#include "tracking/seen_rectangle.h"
+#include "tracking/take_layers.h"
+#include "tracking/track_cover.h"
 #include "tracking/unknown_gamma.h"
 #include "tracking/whole_body.h"
 
@@ -26,21 +26,21 @@ namespace {
 
 // Where the body should be in a frame: interpolated between two measured poses,
 // or extrapolated along a straight line from the ends of the track.
-Pose ExpectedPose(const Track &track, std::int64_t frame) {
+Pose ExpectedPose(const Track& track, std::int64_t frame) {
   if (const auto pose = InterpolatePose(track, frame)) return *pose;
-  const auto &poses = track.poses;
+  const auto& poses = track.poses;
   const bool before = frame < poses.front().frame;
-  const Pose &end = before ? poses.front() : poses.back();
-  const Pose &next = before ? poses[1] : poses[poses.size() - 2];
+  const Pose& end = before ? poses.front() : poses.back();
+  const Pose& next = before ? poses[1] : poses[poses.size() - 2];
   return OnTheWay(end, next, frame);
 }
 
 // Fits outlines again, each fit started from the pose that the track expects.
-std::vector<Fitted> FitFromTrack(Clip &clip, const Background &background,
-                                 const Track &track,
-                                 const TrackOptions &options,
+std::vector<Fitted> FitFromTrack(Clip& clip, const Background& background,
+                                 const Track& track,
+                                 const TrackOptions& options,
                                  OutlineOptions fit_options,
-                                 const std::vector<std::int64_t> &frames) {
+                                 const std::vector<std::int64_t>& frames) {
   fit_options.ground = options.ground;
   std::vector<OutlineJob> jobs;
   jobs.reserve(frames.size());
@@ -54,16 +54,16 @@ std::vector<Fitted> FitFromTrack(Clip &clip, const Background &background,
 // Rejects outlines of another size than the median: a rigid body has one size,
 // and an outline of another sits on another edge of it, such as the rim behind
 // its face.
-void DropOtherSizes(std::vector<Fitted> &all) {
+void DropOtherSizes(std::vector<Fitted>& all) {
   // Ratio of a size to the median. Larger: outlines of a rim stay; smaller:
   // honest outlines of a small body go. Set with the recorded hoops, whose face
   // and rim differ by more.
   constexpr double kMaxSizeRatio = 1.05;
   std::vector<double> sizes;
   sizes.reserve(all.size());
-  for (const Fitted &f : all) sizes.push_back(OutlineSize(f.fit));
+  for (const Fitted& f : all) sizes.push_back(OutlineSize(f.fit));
   const double size = Median(std::move(sizes));
-  std::erase_if(all, [&](const Fitted &f) {
+  std::erase_if(all, [&](const Fitted& f) {
     return OutlineSize(f.fit) > kMaxSizeRatio * size ||
            kMaxSizeRatio * OutlineSize(f.fit) < size;
   });
@@ -79,7 +79,7 @@ std::vector<std::int64_t> ListFrames(std::int64_t first, std::int64_t last,
 
 // The pixels around the outline are the background's where that is known, else
 // a polynomial.
-OutlineOptions MakeFitOptions(const Track &track) {
+OutlineOptions MakeFitOptions(const Track& track) {
   OutlineOptions fit_options;
   fit_options.surround =
       track.known_background ? Surround::kBackground : Surround::kPolynomial;
@@ -90,9 +90,9 @@ OutlineOptions MakeFitOptions(const Track &track) {
 // Fits all frames where so far only every `step`-th frame was fitted, and those
 // at the ends that the coarse sampling may have missed. Returns a warning, or
 // nothing.
-std::string FitSkippedFrames(Clip &clip, const Background &background,
-                             const TrackOptions &options, std::int64_t step,
-                             bool one_size, Track &track) {
+std::string FitSkippedFrames(Clip& clip, const Background& background,
+                             const TrackOptions& options, std::int64_t step,
+                             bool one_size, Track& track) {
   const OutlineOptions fit_options = MakeFitOptions(track);
   const std::int64_t first =
       std::max(options.first, track.poses.front().frame - step + 1);
@@ -105,7 +105,7 @@ std::string FitSkippedFrames(Clip &clip, const Background &background,
                        ListFrames(first, last, 1));
     // A damaged file: the track ends at the first frame that cannot be read,
     // with a warning, rather than be lost.
-  } catch (const core::InputError &) {
+  } catch (const core::InputError&) {
     std::string reason;
     const std::int64_t bad = FirstUnreadable(clip, first, last + 1, reason);
     warning = fmt::format("frames from {} on cannot be read: {}", bad, reason);
@@ -130,9 +130,9 @@ std::string FitSkippedFrames(Clip &clip, const Background &background,
 // (between_looks.h); Refine starts the others on the cubic. `looks`: the
 // outlines that the track was made of. Returns false, and does nothing, where
 // the frames between are needed.
-bool FitWhereNotSmooth(Clip &clip, const Background &background,
-                       const TrackOptions &options, std::int64_t step,
-                       const std::vector<Fitted> &looks, Track &track) {
+bool FitWhereNotSmooth(Clip& clip, const Background& background,
+                       const TrackOptions& options, std::int64_t step,
+                       const std::vector<Fitted>& looks, Track& track) {
   // A body whose size changes needs all frames: each tells its own.
   if (!track.known_background || !IsSteady(track) || MayChangeSize(looks)) {
     return false;
@@ -158,12 +158,12 @@ bool FitWhereNotSmooth(Clip &clip, const Background &background,
                                          MakeFitOptions(track), frames);
   all.insert(all.end(), looks.begin(), looks.end());
   std::sort(all.begin(), all.end(),
-            [](const Fitted &a, const Fitted &b) { return a.frame < b.frame; });
+            [](const Fitted& a, const Fitted& b) { return a.frame < b.frame; });
   DropStrangers(all);
-  const auto is_there = [&](const Fitted &look) {
+  const auto is_there = [&](const Fitted& look) {
     return std::binary_search(
         all.begin(), all.end(), look,
-        [](const Fitted &a, const Fitted &b) { return a.frame < b.frame; });
+        [](const Fitted& a, const Fitted& b) { return a.frame < b.frame; });
   };
   // Interpolation needs both ends of each gap.
   if (!std::all_of(looks.begin(), looks.end(), is_there)) return false;
@@ -178,13 +178,13 @@ bool FitWhereNotSmooth(Clip &clip, const Background &background,
 
 // Makes the track of a hypothesis's strongest tracklet. Warnings, and the
 // length of the whole, come later.
-Track MakeTrack(const Look &look, const Clip &clip,
-                const TrackOptions &options) {
+Track MakeTrack(const Look& look, const Clip& clip,
+                const TrackOptions& options) {
   Track track;
   track.first_frame = options.first;
   track.last_frame = look.found.last;
   track.frame_interval_s = 1.0 / clip.info().time_base.fps;
-  const Chain &chain = look.found.chains.front();
+  const Chain& chain = look.found.chains.front();
   for (std::size_t i = 1; i < look.found.chains.size(); ++i) {
     track.several_bodies |= IsAnotherBody(chain, look.found.chains[i]);
   }
@@ -193,21 +193,10 @@ Track MakeTrack(const Look &look, const Clip &clip,
   return track;
 }
 
-// Which pixels the body covers, and how often: the background is estimated
-// without them.
-Covers FindTrackCovers(Clip &clip, const TrackOptions &options,
-                       const Track &track) {
-  const BodyCover cover(clip, track);
-  return FindCovers(
-      options.first, track.last_frame,
-      [&cover](std::int64_t frame) { return cover.CoverInFrame(frame); },
-      ChooseBackgroundOptions(clip, options));
-}
-
 // Whether the body may have been lost where it passed its own ghost: where a
 // body is in the background's samples often, the estimated background shows it
 // faintly, and a difference to that background is small.
-bool IsTorn(const Look &look) {
+bool IsTorn(const Look& look) {
   // Share of the detections that have an outline. Larger repeats the search in
   // clips that are right, at the cost of time only. Not studied.
   constexpr double kWholeShare = 0.9;
@@ -218,7 +207,7 @@ bool IsTorn(const Look &look) {
 }
 
 // Whether outlines explain the pixels to about their noise.
-bool IsWellModelled(const Track &track) {
+bool IsWellModelled(const Track& track) {
   return MedianMisfit(track.poses) <= kWellModelled;
 }
 
@@ -228,9 +217,9 @@ bool IsWellModelled(const Track &track) {
 // for a disc that stands out by its levels alone: what moves with a ball before
 // an unknown background is its shadow. Not where a sphere was stated: its whole
 // outline is the circle that was fitted.
-void FollowWhole(Clip &clip, const TrackOptions &options, const Look &look,
-                 TrackResult &result, double &whole_px) {
-  Track &track = result.track;
+void FollowWhole(Clip& clip, const TrackOptions& options, const Look& look,
+                 TrackResult& result, double& whole_px) {
+  Track& track = result.track;
   const bool ball_by_levels = track.body.kind == core::BodyKind::kSphere &&
                               look.surround != Surround::kBackground;
   const bool stated_ball = options.kind == core::BodyKind::kSphere;
@@ -239,7 +228,7 @@ void FollowWhole(Clip &clip, const TrackOptions &options, const Look &look,
     return;
   }
   auto whole = FindWhole(clip, result.background, track, options);
-  const Chain &chain = look.found.chains.front();
+  const Chain& chain = look.found.chains.front();
   // Share of the detections that have a pose. With fewer poses the path of the
   // blobs is tried, too. Not studied.
   constexpr double kFewPoses = 0.5;
@@ -251,9 +240,8 @@ void FollowWhole(Clip &clip, const TrackOptions &options, const Look &look,
   whole->known_background = true;
   whole->warnings.clear();
   whole->several_bodies = false;
-  Background behind = EstimateMaskedBackground(
-      clip, FindTrackCovers(clip, options, *whole), result.background,
-      ChooseBackgroundOptions(clip, options));
+  Background behind =
+      EstimateUncovered(clip, options, *whole, result.background);
   // What cannot be followed as one picture does not move as one: the candidate
   // is discarded.
   Track followed = FollowPattern(clip, behind, *whole, options.threads);
@@ -263,244 +251,14 @@ void FollowWhole(Clip &clip, const TrackOptions &options, const Look &look,
   whole_px = 0.0;
 }
 
-// Of the change. More: tracks that are right are sought once more, which costs
-// time only; less: a ghost's or a part's may be taken. Of 42 layered starts in
-// clips of 25 scenes, all of which were right, the least explained 0.95; of
-// photographed blocks whose size was not stated 0.98, of parts of one 0.7 at
-// the most.
-constexpr double kLeastExplained = 0.85;
-
-// Of the change, by a right track of a block whose size nobody stated. More: a
-// second fit, which costs time only; less: a wrong outline may be kept.
-constexpr double kUsuallyExplained = 0.975;
-
-// Of the change, by a rectangle that was taken for what is seen. Smaller keeps
-// parts of blocks (one explained 0.94), larger loses right ones (0.96).
-constexpr double kLeastOfSeen = 0.95;
-
-// The share of all that changes in the clip that a track explains
-// (explained_change.h); 0 where it is not of the stated size.
-double ShareExplained(Clip &clip, const TrackOptions &options,
-                      const Track &track) {
-  if (options.size && !IsOfSize(track.body, *options.size)) return 0.0;
-  ExplainedChangeOptions change;
-  change.still_frames = options.still_frames;
-  change.threads = options.threads;
-  const auto explained = MeasureExplainedChange(clip, track, change);
-  return explained ? explained->OfAll() : 0.0;
-}
-
-// Measures a result again by the two-layer model.
-core::Expected<TrackResult> InLayers(Clip &clip, const TrackOptions &options,
-                                     TrackResult result) {
-  auto track = FollowInLayers(clip, result.background, result.track,
-                              options.size, options.threads);
-  if (!track) return tl::unexpected(track.error());
-  result.track = std::move(*track);
-  if (const auto &gamma = result.track.body.gamma) {
-    result.background = InLight(result.background,
-                                MakeLightScale(clip.info().bit_depth, *gamma));
-  }
-  return result;
-}
-
-// The body from a layered start (layered_start.h), in layers.
-core::Expected<TrackResult> StartInLayers(Clip &clip,
-                                          const TrackOptions &options,
-                                          std::int64_t last,
-                                          const Background &fallback) {
-  auto started = TrackFromLayers(clip, options, last, fallback);
-  if (!started) return started;
-  return InLayers(clip, options, std::move(*started));
-}
-
-// The rectangle that is seen along a track's poses, and the background without
-// it. Absent where it has no end.
-core::Expected<TrackResult> LookAlongPoses(Clip &clip,
-                                           const TrackOptions &options,
-                                           const Track &track,
-                                           const Background &fallback) {
-  // Of the sides, beyond the outline: what it may have left out. More looks at
-  // what stands beside the body. Not studied.
-  constexpr double kMargin = 0.2;
-  constexpr double kLeastMargin_px = 6.0;  // clear of the blur
-  constexpr int kMostRounds = 4;           // twice the sides
-  TrackResult out;
-  out.track = track;
-  for (int round = 0; round < kMostRounds; ++round) {
-    Track wide = out.track;
-    for (double *half :
-         {&wide.body.half_long_px.value, &wide.body.half_short_px.value}) {
-      *half += std::max(kMargin * *half, kLeastMargin_px);
-    }
-    out.background = EstimateMaskedBackground(
-        clip, FindTrackCovers(clip, options, wide), fallback,
-        ChooseBackgroundOptions(clip, options));
-    const auto seen = TakeSeenRectangle(clip, out.background, wide);
-    if (!seen) return core::AbsentBecause("too little of the body is seen");
-    out.track = seen->track;
-    if (!seen->goes_on) return out;
-  }
-  return core::AbsentBecause("what is seen along the poses has no end");
-}
-
-// Layers from the rectangle that is seen along the poses of `layered`; all else
-// is that of the outlines.
-core::Expected<TrackResult> InSeenRectangle(Clip &clip,
-                                            const TrackOptions &options,
-                                            const TrackResult &layered,
-                                            const TrackResult &outlines) {
-  auto seen = LookAlongPoses(clip, options, layered.track, outlines.background);
-  if (!seen) return seen;
-  Track start = outlines.track;
-  start.poses = std::move(seen->track.poses);
-  start.body.half_long_px = seen->track.body.half_long_px;
-  start.body.half_short_px = seen->track.body.half_short_px;
-  seen->track = std::move(start);
-  return InLayers(clip, options, std::move(*seen));
-}
-
-// A result of layers, and the share of the change that it explains.
-struct Explained {
-  TrackResult result;
-  double share = 0.0;
-};
-
-// A block's outline that was led astray explains less than usual. While less
-// than `enough` is explained, the rectangle that is seen is followed, and once
-// more with better poses.
-Explained ImproveOutline(Clip &clip, const TrackOptions &options,
-                         const TrackResult &outlines, TrackResult layered,
-                         double share, double enough) {
-  constexpr int kMostRounds = 3;  // two were enough in the clips looked at
-  Explained best{std::move(layered), share};
-  for (int round = 0; round < kMostRounds && best.share < enough; ++round) {
-    auto again = InSeenRectangle(clip, options, best.result, outlines);
-    if (!again) break;
-    const double then = ShareExplained(clip, options, again->track);
-    if (then <= best.share) break;
-    best = {std::move(*again), then};
-  }
-  return best;
-}
-
-// What layers and the seen rectangle tell differently of a block's sides is
-// part of their u: before a texture layers may settle on others. `behind`: a
-// background in levels.
-void WidenSides(Clip &clip, const TrackOptions &options,
-                const Background &behind, Track &track) {
-  if (track.body.kind != core::BodyKind::kRectangle) return;
-  const auto seen = LookAlongPoses(clip, options, track, behind);
-  if (!seen) return;
-  // px of half a side, by which the two differ where layers are right: of 73
-  // sides of photographed blocks eight in ten differ by less. Larger misses
-  // what layers are off by; smaller widens u of right ones.
-  constexpr double kUsual_px = 0.15;
-  const auto widen = [](core::Estimate &half, const core::Estimate &other) {
-    const double off = half.value - other.value;
-    const double beyond = std::max(0.0, off * off - kUsual_px * kUsual_px);
-    half.u = std::sqrt(half.u * half.u + beyond);
-  };
-  widen(track.body.half_long_px, seen->track.body.half_long_px);
-  widen(track.body.half_short_px, seen->track.body.half_short_px);
-}
-
-// Replaces the result's outlines of a stated body by the two-layer fit: from
-// these outlines or, where they may be those of a ghost, from a layered start:
-// `started`, where it was made already.
-bool TakeLayers(Clip &clip, const TrackOptions &options, double most_covered,
-                std::optional<core::Expected<TrackResult>> started,
-                TrackResult &result) {
-  core::Expected<TrackResult> best = core::AbsentBecause("not of the size");
-  if (!options.size || IsOfSize(result.track.body, *options.size)) {
-    best = InLayers(clip, options, result);
-  }
-  if (options.size &&
-      MayFollowGhost(clip, options, best ? best->track : result.track,
-                     most_covered)) {
-    if (!started) {
-      started = StartInLayers(clip, options, result.track.last_frame,
-                              result.background);
-    }
-    // Of the change: what two tracks of one body differ by. Larger keeps a
-    // ghost's. Not studied.
-    constexpr double kNoise = 0.01;
-    if (*started &&
-        ShareExplained(clip, options, (*started)->track) >
-            kNoise +
-                (best ? ShareExplained(clip, options, best->track) : 0.0)) {
-      best = std::move(*started);
-    }
-  }
-  if (!options.size && best &&
-      best->track.body.kind == core::BodyKind::kRectangle) {
-    double share = ShareExplained(clip, options, best->track);
-    if (share < kUsuallyExplained) {
-      auto better = ImproveOutline(clip, options, result, *best, share,
-                                   kUsuallyExplained);
-      if (better.share > kLeastOfSeen) {
-        best = std::move(better.result);
-        share = better.share;
-      }
-    }
-    // What was followed may be a part of the block.
-    if (share < kLeastExplained) return false;
-    WidenSides(clip, options, result.background, best->track);
-  }
-  // Share of the outlines' frames that layers must keep. Smaller: frames are
-  // lost for nothing; larger: a few bad frames refuse the better model. Not
-  // studied.
-  constexpr double kMinKeptShare = 0.9;
-  if (!best ||
-      static_cast<double>(best->track.poses.size()) <
-          kMinKeptShare * static_cast<double>(result.track.poses.size())) {
-    return false;
-  }
-  result = std::move(*best);
-  return true;
-}
-
-// The background of all frames up to `last`.
-Background EstimateFromAll(Clip &clip, const TrackOptions &options,
-                           std::int64_t last) {
-  return EstimateBackground(clip, options.first, last,
-                            ChooseBackgroundOptions(clip, options));
-}
-
-// Replaces a result that explains too little of the clip, of a body whose size
-// nobody stated, by a layered start.
-bool TakeLayeredStart(Clip &clip, const TrackOptions &options,
-                      std::int64_t last, TrackResult &result) {
-  if (options.size || !CanStartFromLayers(clip, options) ||
-      ShareExplained(clip, options, result.track) >= kLeastExplained) {
-    return false;
-  }
-  auto outlines = TrackFromLayers(clip, options, last,
-                                  EstimateFromAll(clip, options, last));
-  if (!outlines) return false;
-  auto layered = InLayers(clip, options, *outlines);
-  if (!layered) return false;
-  const double share = ShareExplained(clip, options, layered->track);
-  Explained best{std::move(*layered), share};
-  if (outlines->track.body.kind == core::BodyKind::kRectangle) {
-    // The start's sides are known to a cell.
-    best = ImproveOutline(clip, options, *outlines, std::move(best.result),
-                          best.share, 1.0);
-  }
-  if (best.share < kLeastOfSeen) return false;
-  WidenSides(clip, options, outlines->background, best.result.track);
-  result = std::move(best.result);
-  return true;
-}
-
 // Before the background without the body, `behind`: the kind of the body and
 // its outlines once more where the background that it was found before held it,
 // or was not known, and may have misled the choice. Kept, with `behind` as the
 // result's background, if enough outlines are as smooth.
-void ChooseBehind(Clip &clip, const TrackOptions &options, double most_covered,
-                  Background behind, Look &first, TrackResult &result) {
-  Track &track = result.track;
-  const Chain &chain = first.found.chains.front();
+void ChooseBehind(Clip& clip, const TrackOptions& options, double most_covered,
+                  Background behind, Look& first, TrackResult& result) {
+  Track& track = result.track;
+  const Chain& chain = first.found.chains.front();
   if (most_covered <= kUntouched && track.known_background) {
     // A body of another shape would show through its mask.
     if (IsWellModelled(track)) result.background = std::move(behind);
@@ -510,7 +268,7 @@ void ChooseBehind(Clip &clip, const TrackOptions &options, double most_covered,
       ChooseKind(clip, behind, chain, options, Surround::kBackground);
   if (again.badness >= first.choice.badness && !track.known_background) return;
   // At least half of the outlines must remain.
-  const auto enough = [&](const std::vector<Fitted> &fits) {
+  const auto enough = [&](const std::vector<Fitted>& fits) {
     return fits.size() * 2 >= first.fits.size();
   };
   std::vector<Fitted> better;
@@ -551,20 +309,20 @@ void ChooseBehind(Clip &clip, const TrackOptions &options, double most_covered,
 // was lost, the kind of body once more, outlines of all frames, and at last
 // layers, a layered start without a size, or a template where outlines do not
 // explain the body.
-core::Expected<TrackResult> FollowBody(Clip &clip,
-                                       const TrackOptions &options) {
+core::Expected<TrackResult> FollowBody(Clip& clip,
+                                       const TrackOptions& options) {
   std::int64_t last = options.last < 0
                           ? clip.info().frames
                           : std::min(options.last, clip.info().frames);
-  const core::Cancellation &until = clip.cancellation();
+  const core::Cancellation& until = clip.cancellation();
   until.Enter("the body is looked for");
   TrackResult result;
   std::string warning;
   // Of a damaged file what can be read is looked at.
-  const auto look = [&](const auto &once) {
+  const auto look = [&](const auto& once) {
     try {
       once();
-    } catch (const core::InputError &) {
+    } catch (const core::InputError&) {
       std::string reason;
       last = FirstUnreadable(clip, options.first, last, reason);
       if (last == options.first) throw;
@@ -575,8 +333,7 @@ core::Expected<TrackResult> FollowBody(Clip &clip,
   };
   std::optional<core::Expected<TrackResult>> layered;
   const auto explains_clip = [&] {
-    return *layered &&
-           ShareExplained(clip, options, (*layered)->track) >= kLeastExplained;
+    return *layered && ExplainsClip(clip, options, (*layered)->track);
   };
   const auto as_answer = [&] {
     if (!warning.empty()) (*layered)->track.warnings.push_back(warning);
@@ -627,7 +384,7 @@ core::Expected<TrackResult> FollowBody(Clip &clip,
   }
 
   until.Enter("the background behind the body is estimated");
-  Track &track = result.track;
+  Track& track = result.track;
   track = MakeTrack(*first, clip, options);
   // The body's place is known now: the background is estimated without it.
   Covers covers = FindTrackCovers(clip, options, track);
@@ -662,7 +419,7 @@ core::Expected<TrackResult> FollowBody(Clip &clip,
     result.background = std::move(first->background);
     ChooseBehind(clip, options, covers.most, std::move(behind), *first, result);
   }
-  const Chain &chain = first->found.chains.front();
+  const Chain& chain = first->found.chains.front();
   double whole_px = 0.0;
   if (first->choice.kind == core::BodyKind::kRectangle) {
     for (std::size_t i = 1; i < first->found.chains.size(); ++i) {
@@ -725,7 +482,7 @@ core::Expected<TrackResult> FollowBody(Clip &clip,
 
 }  // namespace
 
-core::Expected<TrackResult> TrackBody(Clip &clip, const TrackOptions &options) {
+core::Expected<TrackResult> TrackBody(Clip& clip, const TrackOptions& options) {
   core::Expected<TrackResult> result = FollowBody(clip, options);
   if (!result) return result;
   result->track.is_predicted = clip.info().is_predicted;
@@ -735,8 +492,8 @@ core::Expected<TrackResult> TrackBody(Clip &clip, const TrackOptions &options) {
   return result;
 }
 
-Track FitEveryFrame(Clip &clip, const Background &background,
-                    const Track &track, const TrackOptions &options) {
+Track FitEveryFrame(Clip& clip, const Background& background,
+                    const Track& track, const TrackOptions& options) {
   Track whole = track;
   if (track.step <= 1) return whole;
   clip.cancellation().Enter("outlines are fitted");
