@@ -74,6 +74,32 @@ TEST(Accuracy, HighlightsAndOccludersAreNoTexture) {
   }
 }
 
+// A shadow that touches a block explains change as a part of it would: with it
+// the sides were up to 3 px too large, the face angle 250 bounds off.
+TEST(Accuracy, AShadowIsNoPartOfABlock) {
+  for (const std::uint64_t index : {30U, 56U}) {
+    SCOPED_TRACE(index);
+    const Outcome outcome = Analyse(Draw(index, Hardship::kShadow));
+    ASSERT_TRUE(outcome.readings[kFace]) << outcome.reasons[kFace];
+    const Reading& face = *outcome.readings[kFace];
+    EXPECT_LT(face.u, 10.0 * face.bound);
+    EXPECT_LT(std::abs(face.error), 2.5 * face.u);
+  }
+}
+
+// Where the face's levels cross those of the wall, outlines of free size lose
+// the stated one, and the clip was refused.
+TEST(Accuracy, APictureDoesNotHideAStatedSize) {
+  for (const std::uint64_t index : {4U, 10U, 17U, 54U}) {
+    SCOPED_TRACE(index);
+    const Outcome outcome = Analyse(Draw(index, Hardship::kPictured));
+    ASSERT_TRUE(outcome.readings[kApproach]) << outcome.reasons[kApproach];
+    const Reading& approach = *outcome.readings[kApproach];
+    EXPECT_LT(approach.u, 4.0 * approach.bound);
+    EXPECT_LT(std::abs(approach.error), 2.5 * approach.u);
+  }
+}
+
 // Rebounds from none to ten times the bounce height: where the gap is off it by
 // more than twice its u no label is wrong.
 TEST(Accuracy, NoFalseAndNoMissedBounce) {

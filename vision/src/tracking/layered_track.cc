@@ -91,26 +91,27 @@ std::vector<Fitted> FitTrackOutlines(Clip& clip, const Background& background,
       FitOutlines(clip, background, jobs, fit_options, options.threads));
 }
 
-// What is held of the outlines' size in a pass over the frames. The stated one
-// is held until the places are right; then the picture tells the size. Where
-// the background is not known at one end of the body, a free size draws the
-// place along: at last the size of all frames is held.
-enum class Size { kStated, kFree, kCommon };
+// What is held of the size in a pass over the frames: that of the track, which
+// is the stated one at first. Once the places are right the picture may tell
+// it. Where the background is not known at one end of the body, a free size
+// draws the place along: at last the size of all frames is held.
+enum class Size { kHeld, kFree };
 
 // Outlines of the stated size from a track's poses, in as many passes.
 core::Expected<TrackResult> FitOutlinesOfSize(
     Clip& clip, const TrackOptions& options, Track from,
     const Background& fallback, std::initializer_list<Size> passes) {
-  TrackResult result;
-  Track& track = result.track;
-  track = std::move(from);
   // Frames: fewer make no path.
   constexpr std::size_t kMinPoses = 3;
   const auto too_few = [] {
     return core::AbsentBecause("too few outlines of the stated size");
   };
-  if (track.poses.size() < kMinPoses) return too_few();
-  for (const Size held : passes) {
+  if (from.poses.size() < kMinPoses) return too_few();
+  TrackResult result;
+  Track& track = result.track;
+  track = std::move(from);
+  bool is_first = true;
+  for (const Size size : passes) {
     result.background = EstimateUncovered(clip, options, track, fallback);
     OutlineOptions fit_options;
     fit_options.ground = options.ground;
@@ -119,8 +120,8 @@ core::Expected<TrackResult> FitOutlinesOfSize(
     // rounds.
     constexpr double kTolerance_px = 0.005;
     fit_options.tolerance_px = kTolerance_px;
-    fit_options.fit_size = held == Size::kFree;
-    if (held != Size::kStated) fit_options.blur_px = track.body.blur_px;
+    fit_options.fit_size = size == Size::kFree;
+    if (size == Size::kFree) fit_options.blur_px = track.body.blur_px;
     std::vector<Fitted> fits =
         FitTrackOutlines(clip, result.background, options, track, fit_options);
     std::erase_if(fits, [](const Fitted& f) { return !IsMeasured(f.fit); });
@@ -131,25 +132,19 @@ core::Expected<TrackResult> FitOutlinesOfSize(
       stated.u = std::hypot(stated.u, 2.0 * f.fit.u_size_px);
       return !IsStatedLength(2.0 * OutlineSize(f.fit), stated);
     });
-    // Share of the poses that the last pass may lose. If it loses more, the
-    // pass before knew them better and its result stays. Not studied. If the
-    // pass of free size does, the stated size is not the body's.
-    constexpr double kMaxLostShare = 0.2;
-    if (passes.size() > 1 && held == Size::kCommon &&
+    if (is_first && fits.size() < kMinPoses) return too_few();
+    // Share of the poses that a later pass must keep. If it keeps fewer, it was
+    // led astray, and the pass before knew them better. Not studied.
+    constexpr double kLeastKept = 0.8;
+    if (!is_first &&
         static_cast<double>(fits.size()) <
-            (1.0 - kMaxLostShare) * static_cast<double>(track.poses.size())) {
+            std::max(static_cast<double>(kMinPoses),
+                     kLeastKept * static_cast<double>(track.poses.size()))) {
       break;
     }
-    if (fits.size() < kMinPoses) return too_few();
-    const BodyImage sized = track.body;
     track.warnings.clear();
     FillTrack(fits, *options.kind, track);
-    // Held sizes have no u of their own.
-    if (held == Size::kCommon) {
-      track.body.radius_px = sized.radius_px;
-      track.body.half_long_px = sized.half_long_px;
-      track.body.half_short_px = sized.half_short_px;
-    }
+    is_first = false;
   }
   return result;
 }
@@ -254,16 +249,16 @@ core::Expected<TrackResult> TrackFromLayers(Clip& clip,
     // may be drawn to what its face shows.
     return sized.kind == core::BodyKind::kSphere
                ? FitOutlinesOfSize(clip, sized, std::move(track), fallback,
-                                   {Size::kStated, Size::kFree})
+                                   {Size::kHeld, Size::kFree})
                : FitOutlinesOfSize(clip, sized, std::move(track), fallback,
-                                   {Size::kStated});
+                                   {Size::kHeld});
   }
   start_options.shape = MakeKnownShape(*options.kind, *options.size);
   const auto start = FindLayeredStart(clip, start_options);
   if (!start) return tl::unexpected(start.error());
   return FitOutlinesOfSize(clip, options,
                            TrackOfStart(clip, options, last, *start), fallback,
-                           {Size::kStated, Size::kFree, Size::kCommon});
+                           {Size::kHeld, Size::kFree, Size::kHeld});
 }
 
 }  // namespace touchdown::vision

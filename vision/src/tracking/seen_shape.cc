@@ -1,0 +1,423 @@
+#include "tracking/seen_shape.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <numbers>
+#include <opencv2/imgproc.hpp>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "layers/shape_cover.h"
+#include "tracking/layer_pictures.h"
+
+namespace touchdown::vision {
+namespace {
+
+using layers::LayerPose;
+using layers::PictureStack;
+using layers::Shape;
+
+// I - B at any place of a picture, between four pixels. Absent where one of
+// them is outside of the window, or not known of the background.
+std::optional<double> DifferenceAt(const PictureStack& stack,
+                                   std::size_t picture,
+                                   const Background& background, double x,
+                                   double y) {
+  const core::PixelRect& window = stack.windows[picture];
+  const auto left = static_cast<std::int32_t>(std::floor(x));
+  const auto top = static_cast<std::int32_t>(std::floor(y));
+  if (left < window.x || top < window.y ||
+      left + 1 >= window.x + window.width ||
+      top + 1 >= window.y + window.height) {
+    return std::nullopt;
+  }
+  double sum = 0.0;
+  for (std::int32_t j = top; j <= top + 1; ++j) {
+    const auto* row = stack.WindowRow(picture, j);
+    for (std::int32_t i = left; i <= left + 1; ++i) {
+      if (!background.known_at(i, j)) return std::nullopt;
+      sum += static_cast<double>(row[i - window.x] - background.at(i, j)) *
+             (1.0 - std::abs(x - i)) * (1.0 - std::abs(y - j));
+    }
+  }
+  return sum;
+}
+
+// D on a grid of pixels over the body's coordinates.
+class MeanDifference {
+ public:
+  explicit MeanDifference(const Shape& shape)
+      : reach_x_(static_cast<int>(std::ceil(shape.half_long))),
+        reach_y_(static_cast<int>(std::ceil(shape.half_short))),
+        cells_(static_cast<std::size_t>(columns()) *
+               static_cast<std::size_t>(rows())) {}
+
+  int columns() const { return 2 * reach_x_ + 1; }
+  int rows() const { return 2 * reach_y_ + 1; }
+  double x_of(int column) const { return column - reach_x_; }
+  double y_of(int row) const { return row - reach_y_; }
+  // At any place, between four of the grid. Absent where one of them is.
+  std::optional<double> Between(double x, double y) const {
+    const double u = x + reach_x_;
+    const double v = y + reach_y_;
+    const int column = static_cast<int>(std::floor(u));
+    const int row = static_cast<int>(std::floor(v));
+    if (column < 0 || row < 0 || column + 1 >= columns() || row + 1 >= rows()) {
+      return std::nullopt;
+    }
+    double sum = 0.0;
+    for (int j = 0; j <= 1; ++j) {
+      for (int i = 0; i <= 1; ++i) {
+        const auto d = At(column + i, row + j);
+        if (!d) return std::nullopt;
+        sum += *d * (1.0 - std::abs(u - (column + i))) *
+               (1.0 - std::abs(v - (row + j)));
+      }
+    }
+    return sum;
+  }
+  // Absent where too few frames tell.
+  std::optional<double> At(int column, int row) const {
+    constexpr int kLeastFrames = 3;  // one or two may be an outlier's
+    const Cell& cell = cells_[Index(column, row)];
+    if (cell.frames < kLeastFrames) return std::nullopt;
+    return cell.sum / cell.frames;
+  }
+
+  void Add(const PictureStack& stack, std::size_t picture,
+           const LayerPose& pose, const Background& background) {
+    const double cosine = std::cos(pose.angle_rad);
+    const double sine = std::sin(pose.angle_rad);
+    for (int row = 0; row < rows(); ++row) {
+      for (int column = 0; column < columns(); ++column) {
+        const double along = x_of(column);
+        const double across = y_of(row);
+        const auto d = DifferenceAt(stack, picture, background,
+                                    pose.x + cosine * along - sine * across,
+                                    pose.y + sine * along + cosine * across);
+        if (!d) continue;
+        Cell& cell = cells_[Index(column, row)];
+        cell.sum += *d;
+        ++cell.frames;
+      }
+    }
+  }
+
+ private:
+  struct Cell {
+    double sum = 0.0;
+    int frames = 0;
+  };
+  std::size_t Index(int column, int row) const {
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns()) +
+           static_cast<std::size_t>(column);
+  }
+
+  int reach_x_;
+  int reach_y_;
+  std::vector<Cell> cells_;
+};
+
+// The places that differ, most of whose neighbours do, too.
+std::vector<cv::Point2f> ListSeen(const MeanDifference& difference,
+                                  double noise_dn) {
+  std::vector<double> sizes;
+  for (int row = 0; row < difference.rows(); ++row) {
+    for (int column = 0; column < difference.columns(); ++column) {
+      if (const auto d = difference.At(column, row)) {
+        sizes.push_back(std::abs(*d));
+      }
+    }
+  }
+  std::vector<cv::Point2f> seen;
+  if (sizes.empty()) return seen;
+  // Of the difference that one place in ten exceeds. Parts of a face are
+  // fainter than others; a still picture is off by less. Not studied.
+  constexpr double kOfStrong = 0.1;
+  const auto strong =
+      sizes.begin() + static_cast<std::ptrdiff_t>(9 * sizes.size() / 10);
+  std::nth_element(sizes.begin(), strong, sizes.end());
+  const double least = std::max(kOfStrong * *strong, noise_dn);
+  const auto differs = [&](int column, int row) {
+    const auto d = difference.At(column, row);
+    return d && std::abs(*d) > least;
+  };
+  for (int row = 1; row + 1 < difference.rows(); ++row) {
+    for (int column = 1; column + 1 < difference.columns(); ++column) {
+      int count = 0;
+      for (int j = -1; j <= 1; ++j) {
+        for (int i = -1; i <= 1; ++i) count += differs(column + i, row + j);
+      }
+      constexpr int kMost = 5;  // of nine
+      if (count < kMost) continue;
+      seen.emplace_back(static_cast<float>(difference.x_of(column)),
+                        static_cast<float>(difference.y_of(row)));
+    }
+  }
+  return seen;
+}
+
+// D beside an edge: of a place along it, so many px beyond where it should be.
+using DifferenceBeside =
+    std::function<std::optional<double>(std::size_t place, double beyond_px)>;
+
+// px beyond an edge's expected place: where it is sought.
+constexpr double kFrom_px = -3.0;
+constexpr double kTo_px = 4.0;
+
+// Where the root mean square of D over an edge's places has fallen to half of
+// what it is within the body, px beyond the expected place: a blurred edge is
+// there, whatever the blur and the sign of the contrast. Absent where it does
+// not fall, or fewer than `least` places are known.
+std::optional<double> FindEdge(const DifferenceBeside& beside,
+                               std::size_t places, std::size_t least) {
+  // Within: clear of the blur, and near, since a face has a texture.
+  constexpr double kWithin_px = -1.5;
+  constexpr int kSteps = 4;  // a px; lines between
+  const int last = static_cast<int>((kTo_px - kFrom_px) * kSteps);
+  std::vector<std::optional<double>> rms;
+  double within = 0.0;
+  int of_within = 0;
+  for (int k = 0; k <= last; ++k) {
+    const double beyond_px = kFrom_px + static_cast<double>(k) / kSteps;
+    double sum = 0.0;
+    std::size_t known = 0;
+    for (std::size_t place = 0; place < places; ++place) {
+      const auto d = beside(place, beyond_px);
+      if (!d) continue;
+      sum += *d * *d;
+      ++known;
+    }
+    rms.emplace_back();
+    if (known < least) continue;
+    rms.back() = std::sqrt(sum / static_cast<double>(known));
+    if (beyond_px > kWithin_px) continue;
+    within += *rms.back();
+    ++of_within;
+  }
+  if (of_within == 0) return std::nullopt;
+  const double half = 0.5 * within / of_within;
+  for (std::size_t k = rms.size() - 1; k > 0; --k) {
+    const auto& outer = rms[k];
+    const auto& inner = rms[k - 1];
+    if (!outer || !inner || *outer > half || *inner <= half) continue;
+    return kFrom_px +
+           (static_cast<double>(k - 1) + (*inner - half) / (*inner - *outer)) /
+               kSteps;
+  }
+  return std::nullopt;
+}
+
+constexpr double kLength = 0.8;  // of a side: corners have two edges
+
+// A rectangle in the body's coordinates.
+struct Rectangle {
+  double x = 0.0;
+  double y = 0.0;
+  double turn_rad = 0.0;
+  double half_long = 0.0;
+  double half_short = 0.0;
+};
+
+// A side of it: the way out, and what it is away and long, both halved.
+struct Side {
+  double out_x = 0.0;
+  double out_y = 0.0;
+  double reach = 0.0;
+  double half = 0.0;
+};
+
+// px that a side's edge is beyond the side; 0 where it is not seen.
+double FindSide(const MeanDifference& difference, const Rectangle& at,
+                const Side& side) {
+  const double cosine = std::cos(at.turn_rad);
+  const double sine = std::sin(at.turn_rad);
+  const auto reach = static_cast<std::size_t>(kLength * side.half);
+  return FindEdge(
+             [&](std::size_t place, double beyond_px) {
+               const double k =
+                   static_cast<double>(place) - static_cast<double>(reach);
+               const double out = side.reach + beyond_px;
+               const double u = side.out_x * out - side.out_y * k;
+               const double v = side.out_y * out + side.out_x * k;
+               return difference.Between(at.x + cosine * u - sine * v,
+                                         at.y + sine * u + cosine * v);
+             },
+             2 * reach + 1, reach + 1)
+      .value_or(0.0);
+}
+
+// The rectangle with each side where its edge is.
+Rectangle MoveToEdges(const MeanDifference& difference, const Rectangle& at) {
+  const auto edge = [&](double out_x, double out_y) {
+    return std::abs(out_x) > 0.0
+               ? FindSide(difference, at,
+                          {out_x, out_y, at.half_long, at.half_short})
+               : FindSide(difference, at,
+                          {out_x, out_y, at.half_short, at.half_long});
+  };
+  const double ahead = edge(1.0, 0.0);
+  const double back = edge(-1.0, 0.0);
+  const double down = edge(0.0, 1.0);
+  const double up = edge(0.0, -1.0);
+  Rectangle out = at;
+  out.half_long += 0.5 * (ahead + back);
+  out.half_short += 0.5 * (down + up);
+  const double along = 0.5 * (ahead - back);
+  const double across = 0.5 * (down - up);
+  out.x += std::cos(at.turn_rad) * along - std::sin(at.turn_rad) * across;
+  out.y += std::sin(at.turn_rad) * along + std::cos(at.turn_rad) * across;
+  return out;
+}
+
+// Noise is a seventh in the mean of so many; more cost time.
+constexpr std::size_t kMostFrames = 48;
+
+// D within `shape` about a track's poses.
+MeanDifference MeasureAlong(Clip& clip, const Background& background,
+                            const Track& track, const Shape& shape) {
+  LayerPath path;
+  for (const std::size_t i : SpreadEvenly(track.poses.size(), kMostFrames)) {
+    const Pose& pose = track.poses[i];
+    path.frames.push_back(pose.frame);
+    path.poses.push_back({pose.centre.x_px, pose.centre.y_px, pose.angle_rad});
+  }
+  const PictureStack stack = ReadAround(clip, path, shape);
+  MeanDifference difference(shape);
+  for (std::size_t t = 0; t < path.poses.size(); ++t) {
+    difference.Add(stack, t, path.poses[t], background);
+  }
+  return difference;
+}
+
+// px that the edge of a circle about the body's centre is beyond it.
+std::optional<double> FindCircle(const MeanDifference& difference,
+                                 double radius, std::size_t least) {
+  const double length = 2.0 * std::numbers::pi * radius;
+  return FindEdge(
+      [&](std::size_t place, double beyond_px) {
+        const double angle = static_cast<double>(place) / radius;
+        const double out = radius + beyond_px;
+        return difference.Between(out * std::cos(angle), out * std::sin(angle));
+      },
+      static_cast<std::size_t>(length), least);
+}
+
+// px that the edges of two opposite sides are beyond them.
+std::optional<double> FindPair(const MeanDifference& difference,
+                               const Rectangle& at, bool ends,
+                               std::size_t least) {
+  const double reach = ends ? at.half_long : at.half_short;
+  const auto length = static_cast<std::size_t>(
+      2.0 * kLength * (ends ? at.half_short : at.half_long));
+  return FindEdge(
+      [&](std::size_t place, double beyond_px) {
+        const bool back = place >= length;
+        const double along =
+            static_cast<double>(back ? place - length : place) -
+            0.5 * static_cast<double>(length - 1);
+        const double out = (back ? -1.0 : 1.0) * (reach + beyond_px);
+        return ends ? difference.Between(at.x + out, at.y + along)
+                    : difference.Between(at.x + along, at.y + out);
+      },
+      2 * length, least);
+}
+
+}  // namespace
+
+std::optional<SeenRectangle> TakeSeenRectangle(Clip& clip,
+                                               const Background& background,
+                                               const Track& track) {
+  const Shape shape{false, track.body.half_long_px.value,
+                    track.body.half_short_px.value};
+  const MeanDifference difference =
+      MeasureAlong(clip, background, track, shape);
+  // Standard deviations of a mean: more, and a faint face is not seen.
+  constexpr double kSigmas = 4.0;
+  const double noise_dn =
+      kSigmas *
+      std::sqrt(background.UsualVariance() /
+                static_cast<double>(std::min(track.poses.size(), kMostFrames)));
+  const std::vector<cv::Point2f> seen = ListSeen(difference, noise_dn);
+  constexpr std::size_t kLeastPlaces = 20;  // px: fewer make no rectangle
+  if (seen.size() < kLeastPlaces) return std::nullopt;
+  const cv::RotatedRect least = cv::minAreaRect(seen);
+  double turn = static_cast<double>(least.angle) * std::numbers::pi / 180.0;
+  cv::Size2f sides = least.size;
+  if (sides.width < sides.height) {
+    std::swap(sides.width, sides.height);
+    turn += 0.5 * std::numbers::pi;
+  }
+  // To the nearest of the attitudes that look alike.
+  turn = std::remainder(turn, std::numbers::pi);
+  Rectangle at{static_cast<double>(least.center.x),
+               static_cast<double>(least.center.y), turn,
+               0.5 * static_cast<double>(sides.width),
+               0.5 * static_cast<double>(sides.height)};
+  // Twice: the least rectangle has the blur within.
+  for (int round = 0; round < 2; ++round) at = MoveToEdges(difference, at);
+  SeenRectangle out{track};
+  out.track.body.half_long_px.value = at.half_long;
+  out.track.body.half_short_px.value = at.half_short;
+  // px: neighbours are asked for, and a start is no better.
+  constexpr float kEnd_px = 2.0F;
+  const auto end_x =
+      static_cast<float>(difference.x_of(difference.columns() - 1)) - kEnd_px;
+  const auto end_y =
+      static_cast<float>(difference.y_of(difference.rows() - 1)) - kEnd_px;
+  out.goes_on =
+      std::any_of(seen.begin(), seen.end(), [&](const cv::Point2f& place) {
+        return std::abs(place.x) > end_x || std::abs(place.y) > end_y;
+      });
+  for (Pose& pose : out.track.poses) {
+    const double cosine = std::cos(pose.angle_rad);
+    const double sine = std::sin(pose.angle_rad);
+    pose.centre.x_px += cosine * at.x - sine * at.y;
+    pose.centre.y_px += sine * at.x + cosine * at.y;
+    pose.angle_rad += turn;
+  }
+  return out;
+}
+
+std::optional<SeenSides> MeasureSeenSides(Clip& clip,
+                                          const Background& background,
+                                          const Track& track) {
+  const BodyImage& body = track.body;
+  constexpr std::size_t kLeast = 8;  // places, px: fewer are one mark's
+  constexpr double kReach_px = kTo_px + 1.0;
+  if (body.kind == core::BodyKind::kSphere) {
+    const double radius = body.radius_px.value;
+    const auto beyond =
+        FindCircle(MeasureAlong(clip, background, track,
+                                {true, radius + kReach_px, radius + kReach_px}),
+                   radius, kLeast);
+    if (!beyond) return std::nullopt;
+    return SeenSides{radius + *beyond, radius + *beyond};
+  }
+  const Rectangle at{.half_long = body.half_long_px.value,
+                     .half_short = body.half_short_px.value};
+  const MeanDifference difference = MeasureAlong(
+      clip, background, track,
+      {false, at.half_long + kReach_px, at.half_short + kReach_px});
+  // Layers that settled on one wrong side have their poses off by half of it.
+  // Taken where both sides of a pair tell the same of it, each for itself.
+  const Rectangle moved = MoveToEdges(difference, at);
+  const Rectangle about{moved.x, moved.y, 0.0, at.half_long, at.half_short};
+  const auto find = [&](bool ends, double each_px) {
+    constexpr double kSame_px = 0.5;  // not studied
+    const auto together = FindPair(difference, about, ends, kLeast);
+    return together && std::abs(*together - each_px) < kSame_px
+               ? together
+               : FindPair(difference, at, ends, kLeast);
+  };
+  const auto ends = find(true, moved.half_long - at.half_long);
+  const auto sides = find(false, moved.half_short - at.half_short);
+  if (!ends || !sides) return std::nullopt;
+  return SeenSides{at.half_long + *ends, at.half_short + *sides};
+}
+
+}  // namespace touchdown::vision
