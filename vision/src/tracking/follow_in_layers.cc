@@ -394,10 +394,13 @@ void AlignFrames(Clip& clip, const LayerEvidence& evidence, const LayerFit& fit,
 
 }  // namespace
 
-bool NeedsLayers(const Track& track, double most_covered) {
+bool IsBadlyModelled(const Track& track) {
   constexpr double kExplained = 1.2;  // median misfit
-  return most_covered > kUntouched || !track.known_background ||
-         MedianMisfit(track.poses) > kExplained;
+  return !track.known_background || MedianMisfit(track.poses) > kExplained;
+}
+
+bool NeedsLayers(const Track& track, double most_covered) {
+  return most_covered > kUntouched || IsBadlyModelled(track);
 }
 
 bool HasPlainFace(Clip& clip, const Background& background, const Track& track,

@@ -15,6 +15,10 @@ namespace touchdown::vision {
 // the body but for a tenth of the noise.
 inline constexpr double kUntouched = 0.2;
 
+// Whether outlines leave more than noise of the body, or do not know what is
+// behind it.
+bool IsBadlyModelled(const Track& track);
+
 // What TrackBody asks of a track, so that it is worth the time: a body that its
 // outlines explain before a background that is known well needs no pictures.
 // `most_covered`: the largest share of the frames in which the track covers one

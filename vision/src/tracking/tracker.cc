@@ -451,14 +451,14 @@ core::Expected<TrackResult> FollowBody(Clip& clip,
   const bool needs_layers =
       is_told
           ? NeedsLayers(track, covers.most) ||
+                (options.size && !IsOfSize(track.body, *options.size)) ||
                 ShowsMarks(clip, result.background, track)
           : track.body.kind == core::BodyKind::kRectangle &&
                 !HasPlainFace(clip, result.background, track, options.threads);
   const bool is_layered =
       (needs_layers &&
        TakeLayers(clip, options, covers.most, std::move(layered), result)) ||
-      (NeedsLayers(track, covers.most) &&
-       TakeLayeredStart(clip, options, last, result));
+      (IsBadlyModelled(track) && TakeLayeredStart(clip, options, last, result));
   if (is_layered) {
     whole_px = 0.0;
   } else {
