@@ -82,7 +82,7 @@ TEST(Accuracy, AShadowIsNoPartOfABlock) {
     const Outcome outcome = Analyse(Draw(index, Hardship::kShadow));
     ASSERT_TRUE(outcome.readings[kFace]) << outcome.reasons[kFace];
     const Reading& face = *outcome.readings[kFace];
-    EXPECT_LT(face.u, 10.0 * face.bound);
+    EXPECT_LT(std::abs(face.error), 5.0 * face.bound);
     EXPECT_LT(std::abs(face.error), 2.5 * face.u);
   }
 }

@@ -388,7 +388,7 @@ std::optional<SeenSides> MeasureSeenSides(Clip& clip,
                                           const Track& track) {
   const BodyImage& body = track.body;
   constexpr std::size_t kLeast = 8;  // places, px: fewer are one mark's
-  constexpr double kReach_px = kTo_px + 1.0;
+  constexpr double kReach_px = kTo_px + 1.0;  // D lies between two pixels
   if (body.kind == core::BodyKind::kSphere) {
     const double radius = body.radius_px.value;
     const auto beyond =

@@ -216,7 +216,7 @@ bool IsWellModelled(const Track& track) {
 // (follow_pattern.h has the limit, which compression noise does not reach). Not
 // for a disc that stands out by its levels alone: what moves with a ball before
 // an unknown background is its shadow. Not where a sphere was stated: its whole
-// outline is the circle that was fitted.
+// outline is the circle that was fitted. Nor where the track explains the clip.
 void FollowWhole(Clip& clip, const TrackOptions& options, const Look& look,
                  TrackResult& result, double& whole_px) {
   Track& track = result.track;
@@ -224,7 +224,8 @@ void FollowWhole(Clip& clip, const TrackOptions& options, const Look& look,
                               look.surround != Surround::kBackground;
   const bool stated_ball = options.kind == core::BodyKind::kSphere;
   if (ball_by_levels || stated_ball || !(MedianMisfit(track.poses) > kCrude) ||
-      !IsSteady(track) || look.found.step > 1) {
+      !IsSteady(track) || look.found.step > 1 ||
+      ExplainsClip(clip, options, track)) {
     return;
   }
   auto whole = FindWhole(clip, result.background, track, options);
