@@ -208,7 +208,7 @@ core::Expected<TrackResult> StartInLayers(Clip& clip,
                                           std::int64_t last,
                                           const Background& fallback) {
   const auto started = TrackFromLayers(clip, options, last, fallback);
-  if (!started) return started;
+  if (!started) return tl::unexpected(started.error());
   auto layered = InLayers(clip, options, *started);
   if (layered && options.size &&
       !ShowsStatedSize(clip, options, layered->track, started->background)) {
