@@ -1,6 +1,7 @@
 #include "tracking/seen_shape.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -8,6 +9,7 @@
 #include <numbers>
 #include <opencv2/imgproc.hpp>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -231,39 +233,49 @@ struct Side {
   double half = 0.0;
 };
 
-// px that a side's edge is beyond the side; 0 where it is not seen.
-double FindSide(const MeanDifference& difference, const Rectangle& at,
-                const Side& side) {
+Side End(const Rectangle& at, double way) {
+  return {way, 0.0, at.half_long, at.half_short};
+}
+Side LongSide(const Rectangle& at, double way) {
+  return {0.0, way, at.half_short, at.half_long};
+}
+
+// px that the edges of sides, taken together, are beyond them. Absent where
+// they are not seen, or fewer than `least` px along them.
+std::optional<double> FindSides(const MeanDifference& difference,
+                                const Rectangle& at,
+                                std::span<const Side> sides,
+                                std::size_t least) {
   const double cosine = std::cos(at.turn_rad);
   const double sine = std::sin(at.turn_rad);
-  const auto reach = static_cast<std::size_t>(kLength * side.half);
+  const auto reach = static_cast<std::size_t>(kLength * sides.front().half);
+  const std::size_t length = 2 * reach + 1;
   return FindEdge(
-             [&](std::size_t place, double beyond_px) {
-               const double k =
-                   static_cast<double>(place) - static_cast<double>(reach);
-               const double out = side.reach + beyond_px;
-               const double u = side.out_x * out - side.out_y * k;
-               const double v = side.out_y * out + side.out_x * k;
-               return difference.Between(at.x + cosine * u - sine * v,
-                                         at.y + sine * u + cosine * v);
-             },
-             2 * reach + 1, reach + 1)
-      .value_or(0.0);
+      [&](std::size_t place, double beyond_px) {
+        const Side& side = sides[place / length];
+        const double k =
+            static_cast<double>(place % length) - static_cast<double>(reach);
+        const double out = side.reach + beyond_px;
+        const double u = side.out_x * out - side.out_y * k;
+        const double v = side.out_y * out + side.out_x * k;
+        return difference.Between(at.x + cosine * u - sine * v,
+                                  at.y + sine * u + cosine * v);
+      },
+      sides.size() * length, least);
 }
 
 // The rectangle with each side where its edge is.
 Rectangle MoveToEdges(const MeanDifference& difference, const Rectangle& at) {
-  const auto edge = [&](double out_x, double out_y) {
-    return std::abs(out_x) > 0.0
-               ? FindSide(difference, at,
-                          {out_x, out_y, at.half_long, at.half_short})
-               : FindSide(difference, at,
-                          {out_x, out_y, at.half_short, at.half_long});
+  // px beyond each; 0 where an edge is not seen along half of its side.
+  const auto edge = [&](const Side& side) {
+    return FindSides(difference, at, {&side, 1},
+                     static_cast<std::size_t>(kLength * side.half) + 1)
+        .value_or(0.0);
   };
-  const double ahead = edge(1.0, 0.0);
-  const double back = edge(-1.0, 0.0);
-  const double down = edge(0.0, 1.0);
-  const double up = edge(0.0, -1.0);
+  const double ahead = edge(End(at, 1.0));
+  const double back = edge(End(at, -1.0));
+  const double down = edge(LongSide(at, 1.0));
+  const double up = edge(LongSide(at, -1.0));
   Rectangle out = at;
   out.half_long += 0.5 * (ahead + back);
   out.half_short += 0.5 * (down + up);
@@ -305,26 +317,6 @@ std::optional<double> FindCircle(const MeanDifference& difference,
         return difference.Between(out * std::cos(angle), out * std::sin(angle));
       },
       static_cast<std::size_t>(length), least);
-}
-
-// px that the edges of two opposite sides are beyond them.
-std::optional<double> FindPair(const MeanDifference& difference,
-                               const Rectangle& at, bool ends,
-                               std::size_t least) {
-  const double reach = ends ? at.half_long : at.half_short;
-  const auto length = static_cast<std::size_t>(
-      2.0 * kLength * (ends ? at.half_short : at.half_long));
-  return FindEdge(
-      [&](std::size_t place, double beyond_px) {
-        const bool back = place >= length;
-        const double along =
-            static_cast<double>(back ? place - length : place) -
-            0.5 * static_cast<double>(length - 1);
-        const double out = (back ? -1.0 : 1.0) * (reach + beyond_px);
-        return ends ? difference.Between(at.x + out, at.y + along)
-                    : difference.Between(at.x + along, at.y + out);
-      },
-      2 * length, least);
 }
 
 }  // namespace
@@ -407,15 +399,17 @@ std::optional<SeenSides> MeasureSeenSides(Clip& clip,
   // Taken where both sides of a pair tell the same of it, each for itself.
   const Rectangle moved = MoveToEdges(difference, at);
   const Rectangle about{moved.x, moved.y, 0.0, at.half_long, at.half_short};
-  const auto find = [&](bool ends, double each_px) {
+  const auto find = [&](const std::array<Side, 2>& pair, double each_px) {
     constexpr double kSame_px = 0.5;  // not studied
-    const auto together = FindPair(difference, about, ends, kLeast);
+    const auto together = FindSides(difference, about, pair, kLeast);
     return together && std::abs(*together - each_px) < kSame_px
                ? together
-               : FindPair(difference, at, ends, kLeast);
+               : FindSides(difference, at, pair, kLeast);
   };
-  const auto ends = find(true, moved.half_long - at.half_long);
-  const auto sides = find(false, moved.half_short - at.half_short);
+  const auto ends =
+      find({End(at, 1.0), End(at, -1.0)}, moved.half_long - at.half_long);
+  const auto sides = find({LongSide(at, 1.0), LongSide(at, -1.0)},
+                          moved.half_short - at.half_short);
   if (!ends || !sides) return std::nullopt;
   return SeenSides{at.half_long + *ends, at.half_short + *sides};
 }
