@@ -306,17 +306,50 @@ MeanDifference MeasureAlong(Clip& clip, const Background& background,
   return difference;
 }
 
-// px that the edge of a circle about the body's centre is beyond it.
-std::optional<double> FindCircle(const MeanDifference& difference,
-                                 double radius, std::size_t least) {
-  const double length = 2.0 * std::numbers::pi * radius;
+// A circle in the body's coordinates, and a part of it.
+struct Circle {
+  double x = 0.0;
+  double y = 0.0;
+  double radius = 0.0;
+};
+struct Arc {
+  double middle_rad = 0.0;
+  double reach_rad = std::numbers::pi;  // to both ends
+};
+
+// px that the edge of a circle's arc is beyond it. Absent where it is not seen,
+// or fewer than `least` px along it.
+std::optional<double> FindArc(const MeanDifference& difference,
+                              const Circle& at, const Arc& arc,
+                              std::size_t least) {
+  const double length = 2.0 * arc.reach_rad * at.radius;
   return FindEdge(
       [&](std::size_t place, double beyond_px) {
-        const double angle = static_cast<double>(place) / radius;
-        const double out = radius + beyond_px;
-        return difference.Between(out * std::cos(angle), out * std::sin(angle));
+        const double angle = arc.middle_rad - arc.reach_rad +
+                             static_cast<double>(place) / at.radius;
+        const double out = at.radius + beyond_px;
+        return difference.Between(at.x + out * std::cos(angle),
+                                  at.y + out * std::sin(angle));
       },
       static_cast<std::size_t>(length), least);
+}
+
+// The circle with each quarter where its edge is.
+Circle MoveToEdges(const MeanDifference& difference, const Circle& at) {
+  constexpr double kQuarter_rad = 0.5 * std::numbers::pi;
+  const double quarter_px = kQuarter_rad * at.radius;
+  // px beyond; 0 where an edge is not seen along half of its quarter.
+  const auto edge = [&](double middle_rad) {
+    return FindArc(difference, at, {middle_rad, 0.5 * kQuarter_rad},
+                   static_cast<std::size_t>(0.5 * quarter_px) + 1)
+        .value_or(0.0);
+  };
+  const double ahead = edge(0.0);
+  const double back = edge(2.0 * kQuarter_rad);
+  const double down = edge(kQuarter_rad);
+  const double up = edge(3.0 * kQuarter_rad);
+  return {at.x + 0.5 * (ahead - back), at.y + 0.5 * (down - up),
+          at.radius + 0.25 * (ahead + back + down + up)};
 }
 
 }  // namespace
@@ -381,26 +414,31 @@ std::optional<SeenSides> MeasureSeenSides(Clip& clip,
   const BodyImage& body = track.body;
   constexpr std::size_t kLeast = 8;  // places, px: fewer are one mark's
   constexpr double kReach_px = kTo_px + 1.0;  // D lies between two pixels
+  // Layers that settled on one wrong side have their poses off by half of it.
+  // Edges about the moved centre are taken where each tells the same alone.
+  constexpr double kSame_px = 0.5;  // not studied
   if (body.kind == core::BodyKind::kSphere) {
-    const double radius = body.radius_px.value;
-    const auto beyond =
-        FindCircle(MeasureAlong(clip, background, track,
-                                {true, radius + kReach_px, radius + kReach_px}),
-                   radius, kLeast);
+    const Circle at{.radius = body.radius_px.value};
+    const double reach = at.radius + kReach_px;
+    const MeanDifference difference =
+        MeasureAlong(clip, background, track, {true, reach, reach});
+    const Circle moved = MoveToEdges(difference, at);
+    auto beyond =
+        FindArc(difference, {moved.x, moved.y, at.radius}, {}, kLeast);
+    if (!beyond || std::abs(at.radius + *beyond - moved.radius) >= kSame_px) {
+      beyond = FindArc(difference, at, {}, kLeast);
+    }
     if (!beyond) return std::nullopt;
-    return SeenSides{radius + *beyond, radius + *beyond};
+    return SeenSides{at.radius + *beyond, at.radius + *beyond};
   }
   const Rectangle at{.half_long = body.half_long_px.value,
                      .half_short = body.half_short_px.value};
   const MeanDifference difference = MeasureAlong(
       clip, background, track,
       {false, at.half_long + kReach_px, at.half_short + kReach_px});
-  // Layers that settled on one wrong side have their poses off by half of it.
-  // Taken where both sides of a pair tell the same of it, each for itself.
   const Rectangle moved = MoveToEdges(difference, at);
   const Rectangle about{moved.x, moved.y, 0.0, at.half_long, at.half_short};
   const auto find = [&](const std::array<Side, 2>& pair, double each_px) {
-    constexpr double kSame_px = 0.5;  // not studied
     const auto together = FindSides(difference, about, pair, kLeast);
     return together && std::abs(*together - each_px) < kSame_px
                ? together
