@@ -336,7 +336,7 @@ std::optional<double> FindArc(const MeanDifference& difference,
 
 // The circle with each quarter where its edge is.
 Circle MoveToEdges(const MeanDifference& difference, const Circle& at) {
-  constexpr double kQuarter_rad = 0.5 * std::numbers::pi;
+  constexpr double kQuarter_rad = 0.5 * std::numbers::pi;  // of a turn
   const double quarter_px = kQuarter_rad * at.radius;
   // px beyond; 0 where an edge is not seen along half of its quarter.
   const auto edge = [&](double middle_rad) {
