@@ -176,12 +176,19 @@ int main(int argc, char** argv) {
              [](const Levels& l) { return std::string(Name(l.hardship)); });
   std::vector<Outcome> of_regular;
   std::vector<Outcome> of_hard;
+  std::vector<Outcome> of_unpictured;
   for (const Outcome& o : outcomes) {
     const bool is_regular = o.made.levels.hardship == Hardship::kNone;
     (is_regular ? of_regular : of_hard).push_back(o);
+    if (!is_regular && o.made.levels.hardship != Hardship::kPictured) {
+      of_unpictured.push_back(o);
+    }
   }
   PrintTable(of_hard,
              [](const Levels&) { return std::string("all hardships"); });
+  PrintTable(of_unpictured, [](const Levels&) {
+    return std::string("all hardships but a pictured face");
+  });
   const std::pair<const char*, std::function<double(const Levels&)>> factors[] =
       {{"size, px", [](const Levels& l) { return l.size_px; }},
        {"contrast", [](const Levels& l) { return l.contrast; }},

@@ -53,29 +53,15 @@ using Face = std::vector<float>;
 // Nothing where the disc reaches beyond what is held of the picture.
 std::optional<Face> SampleFace(const PictureStack& stack, std::size_t picture,
                                const Circles& circles, const LayerPose& pose) {
-  const core::PixelRect& window = stack.windows[picture];
   Face face;
   face.reserve(circles.radius_px.size() * kCells);
   for (const double r : circles.radius_px) {
     for (std::size_t k = 0; k < kCells; ++k) {
       const double angle = kCircle * static_cast<double>(k) / kCells;
-      const double x = pose.x + r * std::cos(angle);
-      const double y = pose.y + r * std::sin(angle);
-      const auto column = static_cast<std::int32_t>(std::floor(x));
-      const auto row = static_cast<std::int32_t>(std::floor(y));
-      if (column < window.x || row < window.y ||
-          column + 1 >= window.x + window.width ||
-          row + 1 >= window.y + window.height) {
-        return std::nullopt;
-      }
-      const float* const above =
-          stack.WindowRow(picture, row) + (column - window.x);
-      const float* const below = above + window.width;
-      const auto right = static_cast<float>(x - column);
-      const auto down = static_cast<float>(y - row);
-      face.push_back((1.0F - down) *
-                         (above[0] + right * (above[1] - above[0])) +
-                     down * (below[0] + right * (below[1] - below[0])));
+      const auto level = stack.LevelAt(picture, pose.x + r * std::cos(angle),
+                                       pose.y + r * std::sin(angle));
+      if (!level) return std::nullopt;
+      face.push_back(*level);
     }
   }
   return face;

@@ -2,8 +2,10 @@
 // learned from.
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "touchdown/core/points.h"
@@ -33,6 +35,24 @@ struct PictureStack {
     return levels.data() + begins[picture] +
            static_cast<std::size_t>(row - window.y) *
                static_cast<std::size_t>(window.width);
+  }
+  // The level at any place of the picture, between four pixels of its window.
+  // Absent where they are not all in it.
+  std::optional<float> LevelAt(std::size_t picture, double x, double y) const {
+    const core::PixelRect& window = windows[picture];
+    const auto column = static_cast<std::int32_t>(std::floor(x));
+    const auto row = static_cast<std::int32_t>(std::floor(y));
+    if (column < window.x || row < window.y ||
+        column + 1 >= window.x + window.width ||
+        row + 1 >= window.y + window.height) {
+      return std::nullopt;
+    }
+    const float* const above = WindowRow(picture, row) + (column - window.x);
+    const float* const below = above + window.width;
+    const auto right = static_cast<float>(x - column);
+    const auto down = static_cast<float>(y - row);
+    return (1.0F - down) * (above[0] + right * (above[1] - above[0])) +
+           down * (below[0] + right * (below[1] - below[0]));
   }
   // Adds a picture. Where its window's levels are to be written, until the next
   // is added.

@@ -35,11 +35,11 @@ struct SeenSides {
   double half_short_px = 0.0;
 };
 
-// The sides that are seen about the poses of a track which are right, from 3 px
-// within its own to 4 px beyond: opposite sides, or the whole of a circle,
-// together. Of 73 clips, half were within 0.08 px of the truth, 95 of 100
-// within 0.24. Absent where the edges are not seen, as of a body that stays
-// where it is. Throws what Clip::Read throws.
+// The sides that are seen about a track's poses, which may be a pixel or two
+// off to one side, from 3 px within its own to 4 px beyond: opposite sides, or
+// the whole of a circle, together. Of 73 clips, half were within 0.08 px of the
+// truth, 95 of 100 within 0.24. Absent where the edges are not seen, as of a
+// body that stays where it is. Throws what Clip::Read throws.
 std::optional<SeenSides> MeasureSeenSides(Clip& clip,
                                           const Background& background,
                                           const Track& track);

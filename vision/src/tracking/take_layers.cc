@@ -185,9 +185,9 @@ void WidenSides(Clip& clip, const TrackOptions& options,
 // size are led astray by it.
 bool ShowsStatedSize(Clip& clip, const TrackOptions& options,
                      const Track& track, const Background& behind) {
-  // px of half a side. Larger: wrong sizes are believed, of which those stated
-  // 6 % too large or small were off by 0.42 at the least, in 48 clips of 24
-  // scenes; smaller: starts that are right are refused (of 73 in photographed
+  // px of half a side. Larger: wrong sizes are believed: stated 6 % too large
+  // or small, one side at least was off by 0.49 or more, in 48 clips of 24
+  // scenes. Smaller: starts that are right are refused (of 73 in photographed
   // and rendered clips the largest was 0.28, of 54 pictured ones 0.44).
   constexpr double kMost_px = 0.45;
   constexpr double kSigmas = 4.0;  // of the stated size
